@@ -51,9 +51,9 @@ double best_build(const std::shared_ptr<const accel::TriangleSet>& triangles, un
   double spent = 0.0;
   for (int round = 0; round < 3 || (spent < 1.0 && round < 100); ++round) {
     const auto begin = Clock::now();
-    const double cpu_begin = studies::thread_cpu_seconds();
+    const double cpu_begin = studies::host::thread_cpu_seconds();
     const accel::Octree octree = accel::Octree::build(triangles, options);
-    best = std::min(best, threads == 1 ? studies::thread_cpu_seconds() - cpu_begin : since(begin));
+    best = std::min(best, threads == 1 ? studies::host::thread_cpu_seconds() - cpu_begin : since(begin));
     spent += since(begin);
   }
   return best;
@@ -125,9 +125,9 @@ void build_and_render(bench::Report& report, const std::string& name) {
     const auto begin = Clock::now();
     const auto octree = accel::make_structure("octree", triangles);
     const double built = since(begin);
-    const processors::RenderOptions options{.width = 512, .height = 512, .max_depth = 2};
+    const processors::program::RenderOptions options{.width = 512, .height = 512, .max_depth = 2};
     const auto render_begin = Clock::now();
-    const processors::Frame frame = processors::render(scene, *triangles, *octree, options);
+    const processors::program::Frame frame = processors::program::render(scene, *triangles, *octree, options);
     std::printf("%-12s %9u %9zu %9zu | %6.2f s %6.2f s %9llu | ", name.c_str(), triangles->size(),
                 octree->topology().nodes.size(), octree->topology().entries.size(), built,
                 since(render_begin), static_cast<unsigned long long>(frame.rays.all()));
@@ -169,7 +169,7 @@ void lazy(bench::Report& report) {
   for (const char* name : {"teapot:12", "teapot:39", "gears:2", "gears:4", "tetra:8"}) {
     const scenes::Scene scene = scenes::make_procedural(name);
     const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
-    const processors::RenderOptions options{.width = 256, .height = 256, .max_depth = 2};
+    const processors::program::RenderOptions options{.width = 256, .height = 256, .max_depth = 2};
     std::vector<accel::BuildLimit> limits{{0, 0.0}, {0, 3.0}, {0, 10.0}};
     for (std::uint32_t level = 1; level <= 8; ++level) {
       limits.push_back({level, 0.0});
@@ -187,11 +187,11 @@ void lazy(bench::Report& report) {
         accel::LazyOctreeOptions lazy_options;
         lazy_options.tree.threads = 1;
         lazy_options.initial = limits[k];
-        const double begin = studies::thread_cpu_seconds();
+        const double begin = studies::host::thread_cpu_seconds();
         const auto structure = accel::make_lazy_octree(triangles, lazy_options);
-        const double built = studies::thread_cpu_seconds() - begin;
-        (void)processors::render(scene, *triangles, *structure, options, 1);
-        const double total = studies::thread_cpu_seconds() - begin;
+        const double built = studies::host::thread_cpu_seconds() - begin;
+        (void)processors::program::render(scene, *triangles, *structure, options, 1);
+        const double total = studies::host::thread_cpu_seconds() - begin;
         Result& result = results[k];
         result.build = std::min(result.build, built);
         result.render = std::min(result.render, total - built);
@@ -252,12 +252,12 @@ void update(bench::Report& report) {
       std::uint64_t all_tests = 0;
       std::uint32_t moved = 0;
       for (int round = 0; round < 5; ++round) {
-        double begin = studies::thread_cpu_seconds();
+        double begin = studies::host::thread_cpu_seconds();
         (void)accel::build_octree(after, options, tree.frame());
-        fresh = std::min(fresh, studies::thread_cpu_seconds() - begin);
-        begin = studies::thread_cpu_seconds();
+        fresh = std::min(fresh, studies::host::thread_cpu_seconds() - begin);
+        begin = studies::host::thread_cpu_seconds();
         const accel::OctreeUpdate updated = accel::update_octree(tree, after);
-        partial = std::min(partial, studies::thread_cpu_seconds() - begin);
+        partial = std::min(partial, studies::host::thread_cpu_seconds() - begin);
         tests = 0;
         all_tests = 0;
         moved = updated.moved;

@@ -101,12 +101,12 @@ double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 constexpr memory::CacheConfig cache_config{.size = 16 * 1024, .line = 32, .ways = 4};
 
-processors::MachineConfig machine_of() {
-  processors::MachineConfig machine;
+processors::machine::MachineConfig machine_of() {
+  processors::machine::MachineConfig machine;
   machine.nodes = 1;
   machine.clock = sim::Clock::from_hertz(100e6);
-  machine.operations = processors::cost_preset("unit");
-  machine.packets = {8, 8, processors::PacketOrder::scanline};
+  machine.operations = processors::cost::cost_preset("unit");
+  machine.packets = {8, 8, processors::machine::PacketOrder::scanline};
   machine.cache.cache = cache_config;
   return machine;
 }
@@ -130,15 +130,17 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto primitives = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", primitives);
-  const processors::RenderOptions options{.width = size, .height = size, .max_depth = 2, .record = true};
-  const processors::Frame frame = processors::render(scene, *primitives, *structure, options);
-  const processors::MachineConfig machine = machine_of();
+  const processors::program::RenderOptions options{
+      .width = size, .height = size, .max_depth = 2, .record = true};
+  const processors::program::Frame frame =
+      processors::program::render(scene, *primitives, *structure, options);
+  const processors::machine::MachineConfig machine = machine_of();
   const memory::CacheShape shape = memory::shape_of(cache_config);
-  processors::ReferenceTrace trace;
+  processors::passes::ReferenceTrace trace;
   const std::int64_t misses =
-      processors::replay(*frame.log, machine, {.observer = &trace}).references().all_misses();
+      processors::replay::replay(*frame.log, machine, {.observer = &trace}).references().all_misses();
   std::vector<std::uint32_t> lines;
-  trace.for_each(0, [&](const processors::Reference& reference) {
+  trace.for_each(0, [&](const processors::passes::Reference& reference) {
     if (!reference.write) {
       lines.push_back(static_cast<std::uint32_t>(reference.address / cache_config.line));
     }
@@ -159,18 +161,18 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
                    });
                  }});
   all.push_back({"whole replay", [&] {
-                   return processors::replay(*frame.log, machine).references().all_misses() == misses;
+                   return processors::replay::replay(*frame.log, machine).references().all_misses() == misses;
                  }});
   all.push_back({"plain, 1 to 16 ways", [&] {
                    bool found = false;
-                   for (std::uint32_t ways = 1; ways <= processors::counted_ways; ++ways) {
+                   for (std::uint32_t ways = 1; ways <= processors::passes::counted_ways; ++ways) {
                      PlainCache cache(shape.sets, ways);
                      found = misses_of(cache, lines) == misses || found;
                    }
                    return found;
                  }});
   all.push_back({"all ways in one pass", [&] {
-                   memory::AllWays ways({shape.sets}, processors::counted_ways);
+                   memory::AllWays ways({shape.sets}, processors::passes::counted_ways);
                    for (const std::uint32_t line : lines) {
                      ways.access(line);
                    }
@@ -188,11 +190,11 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
                    }
                    return distances.histogram().misses(full_lines) == full_misses;
                  }});
-  all.push_back({"working set of the log", [&] {
-                   const processors::CacheWorkingSet set = processors::working_set(trace, 1).caches[0];
-                   return set.ways.misses(shape.ways) == misses &&
-                          set.distances.misses(full_lines) == full_misses;
-                 }});
+  all.push_back(
+      {"working set of the log", [&] {
+         const processors::passes::CacheWorkingSet set = processors::passes::working_set(trace, 1).caches[0];
+         return set.ways.misses(shape.ways) == misses && set.distances.misses(full_lines) == full_misses;
+       }});
   for (int repeat = 0; repeat < repeats; ++repeat) {
     for (Contestant& contestant : all) {
       const double begin = now();

@@ -45,26 +45,26 @@ double percentile(std::vector<double> values, double share) {
 }
 
 // Times of another cache take the place of what is kept of the machine before.
-void forget(const studies::Session& session) {
+void forget(const studies::explore::Session& session) {
   for (const char* line : {"128 B", "64 B"}) {
-    (void)session.answer({{"cache.line", line}, {"cache.size", "64 KiB"}}, studies::Measuring::none);
+    (void)session.answer({{"cache.line", line}, {"cache.size", "64 KiB"}}, studies::helps::Measuring::none);
   }
 }
 
 void run(bench::Report& report, const char* size, int repeats, const char* file) {
-  const studies::Session session(file,
-                                 {std::string("image.width=") + size, std::string("image.height=") + size});
+  const studies::explore::Session session(
+      file, {std::string("image.width=") + size, std::string("image.height=") + size});
   std::printf("%s, %s x %s pixels, ms: median, 95 %% of %d\n", file, size, size, repeats);
   std::printf("%6s %7s %-14s %17s %17s %17s %10s\n", "nodes", "cache", "", "model", "answer", "what helps",
               "model off");
   for (const char* nodes : {"16", "64", "256", "1024"}) {
     for (const char* cache : {"1 KiB", "2 KiB", "16 KiB"}) {
       for (const bool fifo : {false, true}) {
-        const studies::Settings settings = {{"machine.nodes", nodes},
-                                            {"cache.size", cache},
-                                            {"cache.line", "32 B"},
-                                            {"cache.ways", fifo ? "4" : "1"},
-                                            {"cache.replacement", fifo ? "fifo" : "lru"}};
+        const studies::explore::Settings settings = {{"machine.nodes", nodes},
+                                                     {"cache.size", cache},
+                                                     {"cache.line", "32 B"},
+                                                     {"cache.ways", fifo ? "4" : "1"},
+                                                     {"cache.replacement", fifo ? "fifo" : "lru"}};
         const char* const kind = fifo ? "4-way fifo" : "direct-mapped";
         std::vector<double> models;
         std::vector<double> answers;
@@ -73,9 +73,10 @@ void run(bench::Report& report, const char* size, int repeats, const char* file)
         for (int repeat = 0; repeat < repeats; ++repeat) {
           forget(session);
           const Timed model = timed([&] { return session.modelled(settings); });
-          const Timed exact = timed([&] { return session.answer(settings, studies::Measuring::none); });
+          const Timed exact =
+              timed([&] { return session.answer(settings, studies::helps::Measuring::none); });
           const Timed help =
-              timed([&] { return session.answer(settings, studies::Measuring::within_budget); });
+              timed([&] { return session.answer(settings, studies::helps::Measuring::within_budget); });
           models.push_back(model.milliseconds);
           answers.push_back(exact.milliseconds);
           helps.push_back(help.milliseconds);

@@ -26,15 +26,15 @@ struct Usage {
   double mebibytes = 0.0;
 };
 
-void run_once(const std::string& scene, const std::string& size, const studies::KeptItems& keep) {
+void run_once(const std::string& scene, const std::string& size, const studies::run::KeptItems& keep) {
   const std::vector<std::string> keys = {"scene.source=" + scene, "image.width=" + size,
                                          "image.height=" + size};
-  sim::Config config = sim::Config::from_text(studies::run_schema(), "", "bench", keys);
-  static_cast<void>(studies::run(config, {.keep = keep}));
+  sim::Config config = sim::Config::from_text(studies::run::run_schema(), "", "bench", keys);
+  static_cast<void>(studies::run::run(config, {.keep = keep}));
 }
 
 // A plain fork is safe, because the parent starts no threads.
-Usage measure(const std::string& scene, const std::string& size, const studies::KeptItems& keep) {
+Usage measure(const std::string& scene, const std::string& size, const studies::run::KeptItems& keep) {
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child == 0) {
@@ -67,8 +67,8 @@ Usage median(std::vector<Usage> usages) {
 }
 
 std::vector<std::string> all_but_structures() {
-  std::vector<std::string> names(studies::plan_item_names.begin(), studies::plan_item_names.end());
-  std::erase(names, std::string(studies::name_of(studies::PlanItem::structures)));
+  std::vector<std::string> names(studies::run::plan_item_names.begin(), studies::run::plan_item_names.end());
+  std::erase(names, std::string(studies::run::name_of(studies::run::PlanItem::structures)));
   return names;
 }
 
@@ -78,8 +78,9 @@ void run(bench::Report& report, const std::string& size, int repeats, const std:
     scenes.push_back(std::string(scene.name) + ":" + std::to_string(scene.default_size));
   }
   scenes.insert(scenes.end(), files.begin(), files.end());
-  const std::vector<studies::KeptItems> kept = {
-      studies::KeptItems(), studies::KeptItems(all_but_structures()), studies::KeptItems::all()};
+  const std::vector<studies::run::KeptItems> kept = {studies::run::KeptItems(),
+                                                     studies::run::KeptItems(all_but_structures()),
+                                                     studies::run::KeptItems::all()};
   std::printf("%-16s %26s %26s\n", "", "processor time, s", "peak memory, MiB");
   std::printf("%-16s %8s %8s %8s %8s %8s %8s\n", "scene", "plan", "kept*", "kept", "plan", "kept*", "kept");
   for (const std::string& scene : scenes) {

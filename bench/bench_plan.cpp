@@ -25,13 +25,13 @@ constexpr std::string_view ten_thousand =
     "interconnect.width = { from = 4, to = 64, steps = 5, scale = \"log\" }\n";
 
 void run(bench::Report& report, const std::string& file, int repeats) {
-  const sim::Schema schema = studies::sweep_schema();
+  const sim::Schema schema = studies::sweep::sweep_schema();
   std::vector<double> times;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     sim::Config config = file.empty() ? sim::Config::from_text(schema, ten_thousand, "bench")
                                       : sim::Config::from_file(schema, file);
     const auto start = std::chrono::steady_clock::now();
-    const studies::SweepPlan plan = studies::plan_sweep(config);
+    const studies::sweep::SweepPlan plan = studies::sweep::plan_sweep(config);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     times.push_back(took.count());
     if (repeat == 0) {

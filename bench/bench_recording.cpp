@@ -25,11 +25,13 @@ double seconds(const std::vector<double>& sorted, double quantile) {
 }
 
 /// Counts how often a leaf ended early, which the totals do not tell.
-std::uint64_t partial_leaves(const processors::WorkLog& log) {
+std::uint64_t partial_leaves(const processors::program::WorkLog& log) {
   std::uint64_t count = 0;
-  for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
-      count += processors::step_of(row.words[at]) == processors::Step::partial_leaf ? 1U : 0U;
+  for (const processors::program::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size();
+         at += processors::program::step_words(row.words.data() + at)) {
+      count +=
+          processors::program::step_of(row.words[at]) == processors::program::Step::partial_leaf ? 1U : 0U;
     }
   }
   return count;
@@ -39,16 +41,17 @@ void run(bench::Report& report, const std::string& name, std::uint32_t size, int
   const scenes::Scene scene = scenes::make_procedural(name);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", triangles);
-  processors::RenderOptions options{.width = size, .height = size, .max_depth = 2};
+  processors::program::RenderOptions options{.width = size, .height = size, .max_depth = 2};
 
   // In turns, so that other work on the host affects both alike; the first pair only warms up.
   std::vector<double> times[2];
-  processors::Frame recorded;
+  processors::program::Frame recorded;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     for (const bool record : {false, true}) {
       options.record = record;
       const std::clock_t start = std::clock();
-      processors::Frame frame = processors::render(scene, *triangles, *structure, options, 1);
+      processors::program::Frame frame =
+          processors::program::render(scene, *triangles, *structure, options, 1);
       const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       if (repeat > 0) {
         times[record ? 1 : 0].push_back(took);
@@ -62,7 +65,7 @@ void run(bench::Report& report, const std::string& name, std::uint32_t size, int
     std::sort(of_kind.begin(), of_kind.end());
   }
 
-  const processors::LogTotals totals = processors::totals_of(*recorded.log);
+  const processors::program::LogTotals totals = processors::program::totals_of(*recorded.log);
   const auto rays = static_cast<double>(totals.all_rays());
   const auto steps = static_cast<double>(totals.all_steps());
   const double pixels = static_cast<double>(size) * size;

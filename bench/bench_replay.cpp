@@ -32,12 +32,12 @@ using namespace marti;
 double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // The machine that is timed: 4-way 16 KiB private caches on a split bus that 64 nodes nearly fill.
-processors::MachineConfig machine_of(std::uint32_t nodes, std::uint32_t packet) {
-  processors::MachineConfig machine;
+processors::machine::MachineConfig machine_of(std::uint32_t nodes, std::uint32_t packet) {
+  processors::machine::MachineConfig machine;
   machine.nodes = nodes;
   machine.clock = sim::Clock::from_hertz(100e6);
-  machine.operations = processors::cost_preset("unit");
-  machine.packets = {packet, packet, processors::PacketOrder::scanline};
+  machine.operations = processors::cost::cost_preset("unit");
+  machine.packets = {packet, packet, processors::machine::PacketOrder::scanline};
   return machine;
 }
 
@@ -51,14 +51,14 @@ struct Timing {
 };
 
 // Timed with the stripped log if there is one.
-Timing time_replay(const processors::WorkLog& log, const processors::MachineConfig& machine, int repeats,
-                   const processors::StrippedLog* stripped = nullptr) {
-  processors::ReplayOptions options;
+Timing time_replay(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
+                   int repeats, const processors::walk::StrippedLog* stripped = nullptr) {
+  processors::replay::ReplayOptions options;
   options.stripped = stripped;
   Timing best;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     const double start = now();
-    const processors::MachineResult result = processors::replay(log, machine, options);
+    const processors::replay::MachineResult result = processors::replay::replay(log, machine, options);
     const double took = now() - start;
     if (repeat == 1 || (repeat > 1 && took < best.seconds)) {
       best.seconds = took;
@@ -86,25 +86,27 @@ void print(const char* name, const Timing& t, double render, double per_referenc
 }
 
 // The least time of stripping `log` on one thread for each of `ways`, and the logs.
-double time_stripping(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                      std::span<const std::uint32_t> ways, int repeats,
-                      std::vector<std::shared_ptr<const processors::StrippedLog>>& stripped) {
+double time_stripping(const processors::program::WorkLog& log,
+                      const processors::machine::MachineConfig& machine, std::span<const std::uint32_t> ways,
+                      int repeats,
+                      std::vector<std::shared_ptr<const processors::walk::StrippedLog>>& stripped) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   double least = 1e300;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     stripped.clear();
     const double start = now();
-    stripped = processors::StrippedLog::make(log, machine, ways);
+    stripped = processors::walk::StrippedLog::make(log, machine, ways);
     least = repeat == 0 ? least : std::min(least, now() - start);
   }
   return least;
 }
 
 // Machines that share stripped logs, beside the native render.
-void run_stripped(bench::Report& report, const processors::WorkLog& log, double render, int repeats) {
+void run_stripped(bench::Report& report, const processors::program::WorkLog& log, double render,
+                  int repeats) {
   constexpr std::array<std::uint32_t, 4> ways = {1, 2, 4, 8};
-  std::vector<std::shared_ptr<const processors::StrippedLog>> stripped;
-  processors::MachineConfig machine = machine_of(64, 8);
+  std::vector<std::shared_ptr<const processors::walk::StrippedLog>> stripped;
+  processors::machine::MachineConfig machine = machine_of(64, 8);
   const auto add = [&](const char* name, double seconds, double aim) {
     report.add(
         bench::against(name, "ms", 1e3 * seconds, "native render", 1e3 * render, bench::Aim{aim, false}));
@@ -116,7 +118,7 @@ void run_stripped(bench::Report& report, const processors::WorkLog& log, double 
   const double one = time_stripping(log, machine, std::span(ways).subspan(2, 1), repeats, stripped);
   std::printf("stripping for 4 ways on one thread %8.1f ms %7.3f x render; %.1f MB, 1 of %.1f references\n",
               1e3 * one, one / render, static_cast<double>(stripped[0]->bytes_of_words()) / 1e6,
-              static_cast<double>(processors::replay(log, machine).references().references()) /
+              static_cast<double>(processors::replay::replay(log, machine).references().references()) /
                   static_cast<double>(stripped[0]->references()));
   add("stripping for 4 ways, one thread", one, 1.0);
   for (const auto& [name, nodes, aim] :
@@ -127,7 +129,7 @@ void run_stripped(bench::Report& report, const processors::WorkLog& log, double 
     print(name, timing, render, 0.0);
     add(name, timing.seconds, aim);
   }
-  processors::MachineConfig small = machine_of(64, 8);
+  processors::machine::MachineConfig small = machine_of(64, 8);
   small.cache.cache.size = 4096;
   small.cache.cache.ways = 1;
   const double making = time_stripping(log, small, std::span(ways).subspan(0, 1), repeats, stripped);
@@ -140,9 +142,9 @@ void run_stripped(bench::Report& report, const processors::WorkLog& log, double 
 
 // DRAM beside banks of fixed time: behind a slow bus, where it is nearly idle, and behind a fast crossbar,
 // where accesses queue.
-void run_dram(bench::Report& report, const processors::WorkLog& log, double render, int repeats) {
+void run_dram(bench::Report& report, const processors::program::WorkLog& log, double render, int repeats) {
   for (const bool crossbar : {false, true}) {
-    processors::MachineConfig machine = machine_of(64, 8);
+    processors::machine::MachineConfig machine = machine_of(64, 8);
     const std::string behind = crossbar ? "crossbar" : "bus";
     if (crossbar) {
       machine.clock = sim::Clock::from_hertz(2e9);
@@ -173,15 +175,16 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", triangles);
-  processors::RenderOptions options{.width = size, .height = size, .max_depth = 2};
+  processors::program::RenderOptions options{.width = size, .height = size, .max_depth = 2};
   double render = 1e300;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     const double start = now();
-    (void)processors::render(scene, *triangles, *structure, options, 1);
+    (void)processors::program::render(scene, *triangles, *structure, options, 1);
     render = repeat == 0 ? render : std::min(render, now() - start);
   }
   options.record = true;
-  const processors::Frame frame = processors::render(scene, *triangles, *structure, options, 1);
+  const processors::program::Frame frame =
+      processors::program::render(scene, *triangles, *structure, options, 1);
   std::printf("teapot:12, %u x %u, depth 2; native render on one thread %.1f ms (best of %d)\n", size, size,
               1e3 * render, repeats);
   std::printf(
@@ -193,21 +196,21 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   report.add(bench::against("replay of 64 nodes", "ms", 1e3 * base.seconds, "native render", 1e3 * render,
                             bench::Aim{1.0, false}));
   const double per_reference = 1e9 * base.seconds / base.references;
-  processors::MachineConfig longer = machine_of(64, 8);
+  processors::machine::MachineConfig longer = machine_of(64, 8);
   longer.cache.cache.line = 64;
   longer.banks.interleave = 64;
   print("64 nodes, 64-byte lines", time_replay(*frame.log, longer, repeats), render, 0.0);
-  processors::MachineConfig dynamic = machine_of(64, 8);
-  dynamic.build.sharing = processors::Sharing::shared;
+  processors::machine::MachineConfig dynamic = machine_of(64, 8);
+  dynamic.build.sharing = processors::machine::Sharing::shared;
   print("64 nodes, shared building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
-  dynamic.build.sharing = processors::Sharing::private_trees;
+  dynamic.build.sharing = processors::machine::Sharing::private_trees;
   print("64 nodes, private building", time_replay(*frame.log, dynamic, repeats), render, 0.0);
-  processors::MachineConfig turns = machine_of(64, 8);
+  processors::machine::MachineConfig turns = machine_of(64, 8);
   turns.interconnect.arbitration = memory::Arbitration::round_robin;
   print("64 nodes, round robin", time_replay(*frame.log, turns, repeats), render, 0.0);
   for (const std::uint32_t nodes : {64U, 65536U}) {
-    processors::MachineConfig spread = machine_of(nodes, nodes == 64 ? 8 : 2);
-    spread.placement = processors::Placement::distributed;
+    processors::machine::MachineConfig spread = machine_of(nodes, nodes == 64 ? 8 : 2);
+    spread.placement = processors::machine::Placement::distributed;
     print(nodes == 64 ? "64 nodes, distributed" : "65,536 nodes, distributed",
           time_replay(*frame.log, spread, repeats), render, 0.0);
   }
@@ -223,7 +226,7 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   print("64 nodes, 2x2 packets", same, render, 0.0);
   const Timing many = time_replay(*frame.log, machine_of(65536, 2), repeats);
   print("65,536 nodes, 2x2 packets", many, render, 1e9 * same.seconds / same.references);
-  const auto stripped = processors::StrippedLog::make(*frame.log, machine_of(64, 2));
+  const auto stripped = processors::walk::StrippedLog::make(*frame.log, machine_of(64, 2));
   const Timing same_stripped = time_replay(*frame.log, machine_of(64, 2), repeats, stripped.get());
   print("64 nodes, 2x2, stripped log", same_stripped, render, 0.0);
   const Timing many_stripped = time_replay(*frame.log, machine_of(65536, 2), repeats, stripped.get());

@@ -25,7 +25,7 @@
 namespace {
 
 using namespace marti;
-using processors::Scheme;
+using processors::machine::Scheme;
 
 // Every scheme, so that a new one is measured too.
 constexpr std::array schemes = {Scheme::image, Scheme::pipeline, Scheme::space};
@@ -34,13 +34,13 @@ constexpr std::array schemes = {Scheme::image, Scheme::pipeline, Scheme::space};
 double now() { return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC); }
 
 // bench_replay's machine: 4-way 16 KiB private caches on a split bus, messages over a mesh.
-processors::MachineConfig machine_of(Scheme scheme, std::uint32_t nodes) {
-  processors::MachineConfig machine;
+processors::machine::MachineConfig machine_of(Scheme scheme, std::uint32_t nodes) {
+  processors::machine::MachineConfig machine;
   machine.scheme = scheme;
   machine.nodes = nodes;
-  machine.pipeline = processors::default_stages(nodes);
+  machine.pipeline = processors::machine::default_stages(nodes);
   machine.clock = sim::Clock::from_hertz(100e6);
-  machine.operations = processors::cost_preset("unit");
+  machine.operations = processors::cost::cost_preset("unit");
   return machine;
 }
 
@@ -48,19 +48,21 @@ struct Work {
   scenes::Scene scene = scenes::make_procedural("teapot:12");
   std::shared_ptr<const accel::TriangleSet> triangles = std::make_shared<const accel::TriangleSet>(scene);
   std::unique_ptr<accel::Structure> structure = accel::make_structure("octree", triangles);
-  processors::RenderOptions options;
+  processors::program::RenderOptions options;
 
   explicit Work(std::uint32_t size) : options{.width = size, .height = size, .max_depth = 2} {}
-  [[nodiscard]] processors::Frame render(bool record) const {
-    processors::RenderOptions with = options;
+  [[nodiscard]] processors::program::Frame render(bool record) const {
+    processors::program::RenderOptions with = options;
     with.record = record;
-    return processors::render(scene, *triangles, *structure, with, 1);
+    return processors::program::render(scene, *triangles, *structure, with, 1);
   }
 };
 
-std::string_view name_of(Scheme scheme) { return processors::scheme_names[static_cast<std::size_t>(scheme)]; }
+std::string_view name_of(Scheme scheme) {
+  return processors::machine::scheme_names[static_cast<std::size_t>(scheme)];
+}
 
-std::int64_t messages_of(const processors::MachineResult& result) {
+std::int64_t messages_of(const processors::replay::MachineResult& result) {
   std::int64_t messages = 0;
   for (const memory::NetworkStatistics& network : result.flow.networks) {
     messages += network.messages;
@@ -68,7 +70,8 @@ std::int64_t messages_of(const processors::MachineResult& result) {
   return messages;
 }
 
-void print(std::string_view name, const processors::MachineResult& result, double seconds, double render) {
+void print(std::string_view name, const processors::replay::MachineResult& result, double seconds,
+           double render) {
   const auto references = static_cast<double>(result.references().references());
   std::printf("%-10.*s %8.1f ms %7.1f M references/s %10lld messages %10llu events %7.3f x render\n",
               static_cast<int>(name.size()), name.data(), 1e3 * seconds, references / seconds / 1e6,
@@ -78,17 +81,17 @@ void print(std::string_view name, const processors::MachineResult& result, doubl
 
 void compare(bench::Report& report, std::uint32_t size, int repeats) {
   const Work work(size);
-  const processors::Frame frame = work.render(true);
+  const processors::program::Frame frame = work.render(true);
   double render = 1e300;
   std::vector<double> best(schemes.size(), 1e300);
-  std::vector<processors::MachineResult> results(schemes.size());
+  std::vector<processors::replay::MachineResult> results(schemes.size());
   for (int repeat = 0; repeat < repeats; ++repeat) {
     double start = now();
     (void)work.render(false);
     render = std::min(render, now() - start);
     for (std::size_t i = 0; i < schemes.size(); ++i) {
       start = now();
-      results[i] = processors::replay(*frame.log, machine_of(schemes[i], 64));
+      results[i] = processors::replay::replay(*frame.log, machine_of(schemes[i], 64));
       best[i] = std::min(best[i], now() - start);
     }
   }
@@ -109,10 +112,11 @@ void many(std::string_view name, std::uint32_t size) {
   }
   const Work work(size);
   const double start = now();
-  const processors::Frame frame = work.render(true);
+  const processors::program::Frame frame = work.render(true);
   const double render = now() - start;
   const double begin = now();
-  const processors::MachineResult result = processors::replay(*frame.log, machine_of(*at, 65536));
+  const processors::replay::MachineResult result =
+      processors::replay::replay(*frame.log, machine_of(*at, 65536));
   print(name, result, now() - begin, render);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

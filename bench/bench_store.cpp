@@ -42,29 +42,29 @@ std::string key_of(std::size_t number) {
 }
 
 struct Sweep {
-  studies::SweepPlan plan;
-  studies::FrameRow frame;
-  std::vector<studies::SweepRow> rows;  // used in turns
+  studies::sweep::SweepPlan plan;
+  studies::sweep::FrameRow frame;
+  std::vector<studies::sweep::SweepRow> rows;  // used in turns
 };
 
 Sweep make_sweep(std::size_t machines) {
   constexpr std::size_t different = 16;
   Sweep sweep;
-  studies::SettingsPool pool;
+  studies::sweep::SettingsPool pool;
   sweep.plan.axes = {"machine.nodes", "cache.size", "interconnect.width"};
-  std::shared_ptr<const processors::WorkLog> log;
+  std::shared_ptr<const processors::program::WorkLog> log;
   for (std::size_t i = 0; i < machines; ++i) {
     const std::int64_t nodes = std::int64_t{1} << (i % 7);
     const std::int64_t size = std::int64_t{1024} << (i / 7 % 6);
     sim::Config config = sim::Config::from_text(
-        studies::run_schema(), "scene.source = \"teapot:6\"\nimage.width = 128\nimage.height = 128\n",
+        studies::run::run_schema(), "scene.source = \"teapot:6\"\nimage.width = 128\nimage.height = 128\n",
         "bench",
         std::vector<std::string>{"machine.nodes=" + std::to_string(nodes),
                                  "cache.size=" + std::to_string(size) + " B",
                                  "host.latency_cycles=" + std::to_string(i / 42)});
-    const studies::FrameConfig frame = studies::read_frame(config);
+    const studies::keys::FrameConfig frame = studies::keys::read_frame(config);
     const std::vector<sim::EffectiveValue> of_frame = config.effective_values();
-    const processors::MachineConfig machine = studies::read_machine(config);
+    const processors::machine::MachineConfig machine = studies::keys::read_machine(config);
     std::vector<sim::EffectiveValue> of_machine;
     for (sim::EffectiveValue& value : config.effective_values()) {
       bool known = false;
@@ -76,13 +76,13 @@ Sweep make_sweep(std::size_t machines) {
       }
     }
     if (i == 0) {
-      const studies::FunctionalRun run = studies::run_functional(frame);
+      const studies::run::FunctionalRun run = studies::run::run_functional(frame);
       log = run.frame.log;
-      sweep.frame = studies::frame_row(run, 0);
+      sweep.frame = studies::sweep::frame_row(run, 0);
       sweep.plan.frames.push_back({key_of(0), frame, of_frame});
     }
     if (sweep.rows.size() < different) {
-      sweep.rows.push_back(studies::sweep_row(machine, processors::replay(*log, machine)));
+      sweep.rows.push_back(studies::sweep::sweep_row(machine, processors::replay::replay(*log, machine)));
     }
     sweep.plan.machines.push_back({key_of(i), 0, machine, pool.share(of_machine)});
     sweep.plan.points.push_back({{nodes, size, static_cast<std::int64_t>(i / 42)}, i, 0, 1.0});
@@ -98,10 +98,10 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
     report.add({.name = what, .unit = "s", .ours = seconds});
   };
   std::printf("%zu machines, %zu settings each\n", machines,
-              studies::all_of(sweep.plan.machines[0].settings).size());
+              studies::sweep::all_of(sweep.plan.machines[0].settings).size());
   {
     Stopwatch watch;
-    studies::SweepStore store(file, sweep.plan);
+    studies::sweep::SweepStore store(file, sweep.plan);
     said("new store, plan entered", watch.seconds());
     Stopwatch adding;
     store.add_frame(0, sweep.frame, 0);
@@ -114,8 +114,8 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
     said("closed", closing.seconds());
   }
   std::size_t buckets = 0;
-  for (const studies::SweepRow& row : sweep.rows) {
-    for (const studies::SweepHistogram& histogram : row.histograms) {
+  for (const studies::sweep::SweepRow& row : sweep.rows) {
+    for (const studies::sweep::SweepHistogram& histogram : row.histograms) {
       buckets += histogram.buckets.size();
     }
   }
@@ -124,7 +124,7 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
               buckets / sweep.rows.size());
   report.add({.name = "store, a machine", .unit = "B", .ours = bytes / static_cast<double>(machines)});
   Stopwatch watch;
-  studies::SweepStore store(file, sweep.plan);
+  studies::sweep::SweepStore store(file, sweep.plan);
   const std::vector<bool> done = store.done();
   said("finished store opened again", watch.seconds());
   for (const bool there : done) {

@@ -81,23 +81,24 @@ class Scratch {
 
 // Line references of all points of a store.
 double references_in(const std::filesystem::path& store) {
-  const studies::SweepReader reader(store);
+  const studies::sweep::SweepReader reader(store);
   double sum = 0.0;
   const std::array<std::string, 2> names = {"hits", "misses"};
-  reader.for_each_point(names,
-                        [&](const studies::StoredPoint& /*point*/, std::span<const studies::Cell> cells) {
-                          for (const studies::Cell& cell : cells) {
-                            sum += static_cast<double>(std::get<std::int64_t>(cell));
-                          }
-                        });
+  reader.for_each_point(
+      names, [&](const studies::sweep::StoredPoint& /*point*/, std::span<const studies::tables::Cell> cells) {
+        for (const studies::tables::Cell& cell : cells) {
+          sum += static_cast<double>(std::get<std::int64_t>(cell));
+        }
+      });
   return sum;
 }
 
 void compare_with_runs(bench::Report& report, const std::string& config, const std::string& size, int runs,
                        const Scratch& scratch) {
   const std::vector<std::string> image = {"--set", "image.width=" + size, "--set", "image.height=" + size};
-  sim::Config read = sim::Config::from_file(studies::sweep_schema(), config, std::vector{image[1], image[3]});
-  const studies::SweepPlan plan = studies::plan_sweep(read);
+  sim::Config read =
+      sim::Config::from_file(studies::sweep::sweep_schema(), config, std::vector{image[1], image[3]});
+  const studies::sweep::SweepPlan plan = studies::sweep::plan_sweep(read);
 
   Took separate;
   for (int i = 0; i < runs; ++i) {
@@ -107,7 +108,7 @@ void compare_with_runs(bench::Report& report, const std::string& config, const s
     std::vector<std::string> arguments = {"run", config, "-o", scratch.path("run")};
     arguments.insert(arguments.end(), image.begin(), image.end());
     for (const sim::EffectiveValue& value :
-         studies::all_of(plan.machines[plan.points[chosen].machine].settings)) {
+         studies::sweep::all_of(plan.machines[plan.points[chosen].machine].settings)) {
       if (value.given) {
         arguments.insert(arguments.end(), {"--set", value.key + "=" + value.value});
       }

@@ -36,22 +36,24 @@ void run(bench::Report& report, std::uint32_t size, std::uint32_t nodes) {
   const scenes::Scene scene = scenes::make_procedural("teapot:12");
   const auto primitives = std::make_shared<const accel::TriangleSet>(scene);
   const auto structure = accel::make_structure("octree", primitives);
-  const processors::RenderOptions options{.width = size, .height = size, .max_depth = 2, .record = true};
-  const processors::Frame frame = processors::render(scene, *primitives, *structure, options);
-  processors::MachineConfig machine;
+  const processors::program::RenderOptions options{
+      .width = size, .height = size, .max_depth = 2, .record = true};
+  const processors::program::Frame frame =
+      processors::program::render(scene, *primitives, *structure, options);
+  processors::machine::MachineConfig machine;
   machine.nodes = nodes;
   machine.clock = sim::Clock::from_hertz(100e6);
-  machine.operations = processors::cost_preset("unit");
+  machine.operations = processors::cost::cost_preset("unit");
 
-  processors::MachineResult result;
+  processors::replay::MachineResult result;
   double ahead = 1e300;
   double stepped = 1e300;
   for (int i = 0; i < replays; ++i) {
     double start = now();
-    result = processors::replay(*frame.log, machine);
+    result = processors::replay::replay(*frame.log, machine);
     ahead = std::min(ahead, now() - start);
     start = now();
-    result = processors::replay(*frame.log, machine, {.step_by_step = true});
+    result = processors::replay::replay(*frame.log, machine, {.step_by_step = true});
     stepped = std::min(stepped, now() - start);
   }
   const std::array jobs = {oracle::Job{frame.log.get(), &machine}};

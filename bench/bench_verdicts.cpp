@@ -28,15 +28,15 @@
 namespace {
 
 using namespace marti;
-using studies::Help;
-using studies::WhatHelps;
+using studies::helps::Help;
+using studies::helps::WhatHelps;
 
 double saved_by(const Help& help) { return help.step ? help.step->saved.value_or(0.0) : 0.0; }
 
 // The parts whose improvement a finding of the old rule advises, as many as it can be taken to mean.
-std::vector<studies::Part> advised_by(studies::Limit limit) {
-  using studies::Limit;
-  using studies::Part;
+std::vector<studies::helps::Part> advised_by(studies::figures::Limit limit) {
+  using studies::figures::Limit;
+  using studies::helps::Part;
   switch (limit) {
     case Limit::compute:
       return {Part::nodes};
@@ -68,19 +68,19 @@ std::vector<studies::Part> advised_by(studies::Limit limit) {
 
 // What a step is worth: its share of the frame, or with prices as studies/helps has it.
 std::pair<int, double> value_of(const Help& help, bool by_worth) {
-  return by_worth ? studies::worth(help) : std::pair(0, saved_by(help));
+  return by_worth ? studies::helps::worth(help) : std::pair(0, saved_by(help));
 }
 
 // The best of the steps that the old rule can be taken to advise; null if it advises none.
-const Help* best_advised(studies::Limit limit, const WhatHelps& what, bool by_worth) {
-  const std::vector<studies::Part> parts = advised_by(limit);
+const Help* best_advised(studies::figures::Limit limit, const WhatHelps& what, bool by_worth) {
+  const std::vector<studies::helps::Part> parts = advised_by(limit);
   const Help* best = nullptr;
   for (const Help& help : what.helps) {
     const bool packets = help.name.starts_with("packets.");
-    const bool stage = help.name.starts_with("pipeline.") && help.part == studies::Part::nodes;
+    const bool stage = help.name.starts_with("pipeline.") && help.part == studies::helps::Part::nodes;
     const bool of_part = std::find(parts.begin(), parts.end(), help.part) != parts.end() && !packets;
-    const bool uneven =
-        (limit == studies::Limit::imbalance && packets) || (limit == studies::Limit::slowest_part && stage);
+    const bool uneven = (limit == studies::figures::Limit::imbalance && packets) ||
+                        (limit == studies::figures::Limit::slowest_part && stage);
     if (help.step && (of_part || uneven) &&
         (best == nullptr || value_of(help, by_worth) > value_of(*best, by_worth))) {
       best = &help;
@@ -100,18 +100,18 @@ struct Score {
     const Help* best = nullptr;
     const auto value = [&](const Help& help) { return value_of(help, by_worth); };
     for (const Help& help : what.helps) {
-      if (help.step && saved_by(help) >= studies::worth_naming &&
+      if (help.step && saved_by(help) >= studies::helps::worth_naming &&
           (best == nullptr || value(help) > value(*best))) {
         best = &help;
       }
     }
     const double gain = named != nullptr ? saved_by(*named) : 0.0;
-    bool good = best == nullptr ? gain >= -studies::tie : named == best;
+    bool good = best == nullptr ? gain >= -studies::helps::tie : named == best;
     if (best != nullptr && named != nullptr) {
       const double price = by_worth ? named->step->price.value_or(0.0) : 0.0;
-      good = good || studies::worth(gain + studies::tie, price) >= value(*best);
+      good = good || studies::helps::worth(gain + studies::helps::tie, price) >= value(*best);
       if (!by_worth) {
-        good = saved_by(*best) - gain <= studies::tie;
+        good = saved_by(*best) - gain <= studies::helps::tie;
       }
     }
     ++points;
@@ -135,7 +135,7 @@ struct Score {
   }
 };
 
-const Help* find(const WhatHelps& what, const studies::PredictedStep* step) {
+const Help* find(const WhatHelps& what, const studies::limits::PredictedStep* step) {
   for (const Help& help : what.helps) {
     if (step != nullptr && help.name == step->name) {
       return &help;
@@ -147,12 +147,12 @@ const Help* find(const WhatHelps& what, const studies::PredictedStep* step) {
 // With `verbose` each wrong verdict is printed.
 void score_sweep(bench::Report& report, const std::string& file, const std::string& size, std::size_t every,
                  bool verbose) {
-  test::TimedSweep sweep(sim::Config::from_file(studies::sweep_schema(), file,
+  test::TimedSweep sweep(sim::Config::from_file(studies::sweep::sweep_schema(), file,
                                                 std::vector{"image.width=" + size, "image.height=" + size}));
-  const studies::SweepLimits limits = sweep.limits();
-  const studies::SweepLimits priced = sweep.limits(sweep.prices());
+  const studies::limits::SweepLimits limits = sweep.limits();
+  const studies::limits::SweepLimits priced = sweep.limits(sweep.prices());
   const auto begin = std::chrono::steady_clock::now();
-  std::vector<studies::PointLimit> predicted;
+  std::vector<studies::limits::PointLimit> predicted;
   for (std::size_t i = 0; i < sweep.points(); ++i) {
     predicted.push_back(limits.at(i));
   }
@@ -171,8 +171,8 @@ void score_sweep(bench::Report& report, const std::string& file, const std::stri
   }
   order.resize((order.size() + every - 1) / every);
   for (const std::size_t i : order) {
-    const WhatHelps what = sweep.measure(i, sweep.prices().value_or(studies::Prices{}));
-    const studies::Limit limit = studies::find_limit(sweep.machine(i), sweep.result(i));
+    const WhatHelps what = sweep.measure(i, sweep.prices().value_or(studies::keys::Prices{}));
+    const studies::figures::Limit limit = studies::figures::find_limit(sweep.machine(i), sweep.result(i));
     const Help* const named = find(what, predicted[i].best());
     const std::size_t right = rule.right;
     old_rule.add(what, best_advised(limit, what, false), false);
@@ -218,23 +218,25 @@ void score_random(bench::Report& report, std::size_t machines) {
     test::use_default_interleave(made.machine);
     const std::vector<std::string> assignments = test::assignments_of(made.machine);
     sim::Config config = test::configuration_of(assignments);
-    const processors::MachineConfig machine = studies::read_machine(config);
-    const processors::MachineResult result = processors::replay(made.log, machine);
+    const processors::machine::MachineConfig machine = studies::keys::read_machine(config);
+    const processors::replay::MachineResult result = processors::replay::replay(made.log, machine);
     if (result.end == 0) {
       continue;
     }
     const WhatHelps what =
-        studies::what_helps(config, std::nullopt, machine, result, {made.log, nullptr, {}, {}});
-    old_rule.add(what, best_advised(studies::find_limit(machine, result), what, false), false);
-    const std::vector<const Help*> best = studies::best_helps(what);
+        studies::helps::what_helps(config, std::nullopt, machine, result, {made.log, nullptr, {}, {}});
+    old_rule.add(what, best_advised(studies::figures::find_limit(machine, result), what, false), false);
+    const std::vector<const Help*> best = studies::helps::best_helps(what);
     if (!best.empty()) {
       std::vector<std::string> followed = assignments;
-      for (const studies::KeyChange& key : best[0]->step->keys) {
+      for (const studies::helps::KeyChange& key : best[0]->step->keys) {
         followed.push_back(key.key + "=" + key.to);
       }
       sim::Config changed = test::configuration_of(followed);
       ++advice;
-      longer += processors::replay(made.log, studies::read_machine(changed)).end >= result.end ? 1 : 0;
+      longer += processors::replay::replay(made.log, studies::keys::read_machine(changed)).end >= result.end
+                    ? 1
+                    : 0;
     }
   }
   std::printf("%zu random machines of all schemes\n", old_rule.points);

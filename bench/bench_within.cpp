@@ -24,28 +24,29 @@
 namespace {
 
 using namespace marti;
-using studies::Figure;
+using studies::estimate::Figure;
 
 // The machine of configs/marti.toml, with 64 nodes.
-processors::MachineConfig default_machine() {
-  processors::MachineConfig machine;
+processors::machine::MachineConfig default_machine() {
+  processors::machine::MachineConfig machine;
   machine.nodes = 64;
   machine.clock = sim::Clock::from_hertz(100e6);
-  machine.operations = processors::cost_preset("unit");
+  machine.operations = processors::cost::cost_preset("unit");
   return machine;
 }
 
-processors::MachineConfig random_machine(std::mt19937_64& random) {
+processors::machine::MachineConfig random_machine(std::mt19937_64& random) {
   const auto one_of = [&](auto... values) {
     const std::array all{values...};
     return all[random() % all.size()];
   };
-  processors::MachineConfig machine = default_machine();
+  processors::machine::MachineConfig machine = default_machine();
   machine.nodes = one_of(1U, 4U, 10U, 16U, 40U, 64U, 100U, 256U, 1024U, 4096U);
   machine.clock = sim::Clock::from_hertz(one_of(25e6, 100e6, 400e6));
   machine.packets.width = one_of(4U, 8U, 16U);
   machine.packets.height = one_of(4U, 8U, 16U);
-  machine.packets.order = one_of(processors::PacketOrder::scanline, processors::PacketOrder::hilbert);
+  machine.packets.order =
+      one_of(processors::machine::PacketOrder::scanline, processors::machine::PacketOrder::hilbert);
   machine.cache.cache.line = one_of(16U, 32U, 64U, 128U);
   machine.cache.cache.ways = one_of(1U, 2U, 4U);
   machine.cache.cache.size = std::uint64_t{one_of(2U, 8U, 16U, 64U, 512U)} * 1024;
@@ -61,8 +62,8 @@ processors::MachineConfig random_machine(std::mt19937_64& random) {
 // Sums over all machines that were estimated.
 struct Score {
   int cases = 0;
-  std::array<int, studies::figure_count> covered{};
-  std::array<double, studies::figure_count> worst{};
+  std::array<int, studies::estimate::figure_count> covered{};
+  std::array<double, studies::estimate::figure_count> worst{};
 };
 
 struct Costs {
@@ -71,34 +72,35 @@ struct Costs {
   double worst = 0.0;
 };
 
-void compare(const studies::FrameConfig& frame, const processors::MachineConfig& machine, double tolerance,
-             std::uint64_t seed, Score& score, Costs& costs) {
-  const processors::MachineConfig one = processors::one_node_of(machine);
-  double begin = studies::process_cpu_seconds();
-  const studies::PreparedFrame whole(frame);
-  const studies::FunctionalRun run = whole.finish(whole.trace());
-  studies::Estimate truth;
-  truth.value = studies::figures_of(machine, processors::replay(*run.frame.log, machine));
-  studies::Estimate truth_of_one = truth;
+void compare(const studies::keys::FrameConfig& frame, const processors::machine::MachineConfig& machine,
+             double tolerance, std::uint64_t seed, Score& score, Costs& costs) {
+  const processors::machine::MachineConfig one = processors::machine::one_node_of(machine);
+  double begin = studies::host::process_cpu_seconds();
+  const studies::run::PreparedFrame whole(frame);
+  const studies::run::FunctionalRun run = whole.finish(whole.trace());
+  studies::estimate::Estimate truth;
+  truth.value = studies::estimate::figures_of(machine, processors::replay::replay(*run.frame.log, machine));
+  studies::estimate::Estimate truth_of_one = truth;
   if (machine.nodes > 1) {
-    truth_of_one.value = studies::figures_of(one, processors::replay(*run.frame.log, one));
+    truth_of_one.value = studies::estimate::figures_of(one, processors::replay::replay(*run.frame.log, one));
   }
-  add_speed_up(truth, truth_of_one);
-  const double exact = studies::process_cpu_seconds() - begin;
+  studies::estimate::add_speed_up(truth, truth_of_one);
+  const double exact = studies::host::process_cpu_seconds() - begin;
 
-  begin = studies::process_cpu_seconds();
-  const studies::PreparedFrame prepared(frame);
-  studies::SampledFrame sampled = studies::sampled_frame(prepared);
-  const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
-  const studies::WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance, seed);
+  begin = studies::host::process_cpu_seconds();
+  const studies::run::PreparedFrame prepared(frame);
+  studies::estimate::SampledFrame sampled = studies::estimate::sampled_frame(prepared);
+  const processors::machine::PacketList packets(frame.render.width, frame.render.height, machine.packets);
+  const studies::estimate::WithinAnswer answer =
+      studies::estimate::estimate_within(sampled, packets, machine, tolerance, seed);
   if (!answer.estimate) {
-    const studies::FunctionalRun filled = prepared.finish(std::move(sampled).whole());
-    (void)processors::replay(*filled.frame.log, machine);
+    const studies::run::FunctionalRun filled = prepared.finish(std::move(sampled).whole());
+    (void)processors::replay::replay(*filled.frame.log, machine);
     if (machine.nodes > 1) {
-      (void)processors::replay(*filled.frame.log, one);
+      (void)processors::replay::replay(*filled.frame.log, one);
     }
   }
-  const double within = studies::process_cpu_seconds() - begin;
+  const double within = studies::host::process_cpu_seconds() - begin;
   costs.within += within;
   costs.exact += exact;
   costs.worst = std::max(costs.worst, within / exact);
@@ -110,15 +112,16 @@ void compare(const studies::FrameConfig& frame, const processors::MachineConfig&
     std::fflush(stdout);
     return;
   }
-  const studies::Estimate& found = answer.estimate->sampled.machine;
+  const studies::estimate::Estimate& found = answer.estimate->sampled.machine;
   ++score.cases;
-  for (std::size_t i = 0; i < studies::figure_count; ++i) {
+  for (std::size_t i = 0; i < studies::estimate::figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
-    const double error = std::abs(error_of(figure, found.value[figure], truth.value[figure]));
+    const double error =
+        std::abs(studies::estimate::error_of(figure, found.value[figure], truth.value[figure]));
     score.covered[i] += error <= found.half_width[figure] + 1e-12 ? 1 : 0;
     score.worst[i] = std::max(score.worst[i], error);
-    std::printf("%s %.1f of %.1f %%, ", std::string(studies::figure_names[i]).c_str(), 100.0 * error,
-                100.0 * found.half_width[figure]);
+    std::printf("%s %.1f of %.1f %%, ", std::string(studies::estimate::figure_names[i]).c_str(),
+                100.0 * error, 100.0 * found.half_width[figure]);
   }
   std::printf("%.1f %% traced\n", 100.0 * sampled.traced().pixels);
   std::fflush(stdout);
@@ -139,7 +142,7 @@ int main(int argc, char** argv) {
     scenes = {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"};
   }
   for (const char* scene : scenes) {
-    studies::FrameConfig frame;
+    studies::keys::FrameConfig frame;
     frame.scene = scene;
     frame.structure = "octree";
     frame.render.width = side;
@@ -147,9 +150,9 @@ int main(int argc, char** argv) {
     frame.render.max_depth = 2;
     frame.memory = sim::MemoryBudget(std::uint64_t{1} << 33U);
     std::printf("%s, %u x %u, within %g %%\n", scene, side, side, 100.0 * tolerance);
-    processors::MachineConfig full = default_machine();
+    processors::machine::MachineConfig full = default_machine();
     full.cache.cache = {.size = 4096, .line = 32, .ways = 1};
-    for (const processors::MachineConfig& machine : {default_machine(), full}) {
+    for (const processors::machine::MachineConfig& machine : {default_machine(), full}) {
       compare(frame, machine, tolerance, ++seed, score, all);
     }
     for (int i = 0; i < machines; ++i) {
@@ -158,10 +161,10 @@ int main(int argc, char** argv) {
   }
   std::printf("\n%d of them estimated; processor time of all: %.3f of exact, of the worst: %.3f\n",
               score.cases, all.within / all.exact, all.worst);
-  for (std::size_t i = 0; i < studies::figure_count && score.cases > 0; ++i) {
+  for (std::size_t i = 0; i < studies::estimate::figure_count && score.cases > 0; ++i) {
     std::printf("%-9s in the interval in %5.1f %% of cases, worst error %.1f %%\n",
-                std::string(studies::figure_names[i]).c_str(), 100.0 * score.covered[i] / score.cases,
-                100.0 * score.worst[i]);
+                std::string(studies::estimate::figure_names[i]).c_str(),
+                100.0 * score.covered[i] / score.cases, 100.0 * score.worst[i]);
   }
   return 0;
 }

@@ -1,5 +1,5 @@
-# cmake -DDIRECTORY=dir -DFUNCTION=name -DHEADER=file.h -DOUTPUT=file.cpp -P embed_charts.cmake: the chart
-# specifications of a directory as the C++ source of FUNCTION, which HEADER declares.
+# cmake -DDIRECTORY=dir -DROOM=room -DFUNCTION=name -DHEADER=file.h -DOUTPUT=file.cpp -P embed_charts.cmake: the chart
+# specifications of a directory as the C++ source of FUNCTION, which HEADER declares in the namespace of ROOM.
 cmake_minimum_required(VERSION 3.25)
 
 file(GLOB charts "${DIRECTORY}/*.vl.json")
@@ -25,14 +25,14 @@ file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_charts.cmake.
 
 #include \"${HEADER}\"
 
-namespace marti::studies {
+namespace marti::studies::${ROOM} {
 
-std::span<const ChartSpecification> ${FUNCTION}() {
-  static constexpr std::array<ChartSpecification, ${count}> charts{{
+std::span<const tables::ChartSpecification> ${FUNCTION}() {
+  static constexpr std::array<tables::ChartSpecification, ${count}> charts{{
 ${entries}}};
   return charts;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::${ROOM}
 ")
 file(COPY_FILE "${OUTPUT}.new" "${OUTPUT}")

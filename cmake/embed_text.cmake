@@ -1,5 +1,6 @@
-# cmake -DINPUT=file -DNAME=function [-DSCRIPT=ON] -DOUTPUT=file.cpp -P embed_text.cmake: a text file as a function
-# std::string_view marti::studies::NAME() of the program; with SCRIPT as a Script, which is a text with its hash.
+# cmake -DINPUT=file -DROOM=room -DNAME=function [-DSCRIPT=ON] -DOUTPUT=file.cpp -P embed_text.cmake: a text file as a
+# function std::string_view marti::studies::ROOM::NAME() of the program; with SCRIPT as a Script of the room `report`,
+# which is a text with its hash.
 cmake_minimum_required(VERSION 3.25)
 
 file(READ "${INPUT}" text)
@@ -37,11 +38,11 @@ endif()
 file(WRITE "${OUTPUT}.new" "// Made by cmake/embed_text.cmake.
 #include ${header}
 
-namespace marti::studies {
+namespace marti::studies::${ROOM} {
 
 ${type} ${NAME}();
 ${type} ${NAME}() { return ${value}; }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::${ROOM}
 ")
 file(COPY_FILE "${OUTPUT}.new" "${OUTPUT}")

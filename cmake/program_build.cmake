@@ -18,9 +18,9 @@ string(SUBSTRING "${hash}" 0 16 digits)
 file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
 #include "studies/host/program_build.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 std::string_view build_of_program() { return "marti @VERSION@ @digits@"; }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host
 ]])

@@ -98,7 +98,7 @@ extern "C" {
 ${names.join("\n")}
 }
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 std::span<const Script> vega_scripts() {
   static const std::array<Script, ${scripts.length}> scripts{
@@ -109,6 +109,6 @@ ${entries.join("\n")}
 
 bool have_vega_scripts() { return true; }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report
 `,
 );

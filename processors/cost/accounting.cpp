@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 std::int64_t ReferenceCounts::all_hits() const {
   return std::accumulate(hits.begin(), hits.end(), std::int64_t{0});
@@ -37,4 +37,4 @@ sim::Ticks sum_of(const TimeDivision& time) {
   return sum;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -11,7 +11,7 @@
 #include "sim/statistics.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 enum class Activity : std::uint8_t {
   traversal,     ///< setting up rays, visiting branches and leaves
@@ -91,7 +91,7 @@ struct StepCounts {
 static_assert(sim::declares_every_member<StepCounts>());
 
 /// The counter of each RayKind.
-inline constexpr std::array<std::int64_t StepCounts::*, ray_kinds> ray_counters = {
+inline constexpr std::array<std::int64_t StepCounts::*, program::ray_kinds> ray_counters = {
     &StepCounts::camera_rays, &StepCounts::shadow_rays, &StepCounts::reflection_rays,
     &StepCounts::refraction_rays, &StepCounts::diffuse_rays};
 
@@ -147,4 +147,4 @@ inline void add_service(TimeDivision& time, const memory::Service& service) {
   time[static_cast<std::size_t>(Activity::bank_access)] += service.bank;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -9,7 +9,7 @@
 #include "processors/cost/step_time.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 namespace {
 
@@ -97,7 +97,7 @@ const BuildMixes& build_mixes() {
   return table;
 }
 
-BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words) {
+BuildCycles build_cycles(const machine::OperationCycles& cycles, const RecordWords& words) {
   const BuildMixes& mixes = build_mixes();
   using sim::add_ticks;
   const auto words_of = [&](std::int64_t count, std::int64_t each) {
@@ -113,7 +113,7 @@ BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words
           .publish = store(words.node)};
 }
 
-BuildTicks build_ticks(const MachineConfig& config) {
+BuildTicks build_ticks(const machine::MachineConfig& config) {
   const BuildCycles cycles = build_cycles(config.operations, record_words(config));
   const sim::Clock& clock = config.clock;
   return {.lock = clock.cycles(cycles.lock),
@@ -124,4 +124,4 @@ BuildTicks build_ticks(const MachineConfig& config) {
           .publish = clock.cycles(cycles.publish)};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -14,7 +14,7 @@ namespace marti::accel {
 class Octree;
 }  // namespace marti::accel
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 /// Means in thousandths of an operation. listed: one listed primitive against the middle planes (its
 /// bounding box, and which children it can meet). overlap: one triangle against one box. child: the planes
@@ -52,7 +52,7 @@ struct BuildCycles {
   std::int64_t entry = 0;    ///< store one entry of a child's list
   std::int64_t publish = 0;  ///< store the node's own record
 };
-[[nodiscard]] BuildCycles build_cycles(const OperationCycles& cycles, const RecordWords& words);
+[[nodiscard]] BuildCycles build_cycles(const machine::OperationCycles& cycles, const RecordWords& words);
 
 /// The times of BuildCycles in ticks of one machine.
 struct BuildTicks {
@@ -63,6 +63,6 @@ struct BuildTicks {
   sim::Ticks entry = 0;
   sim::Ticks publish = 0;
 };
-[[nodiscard]] BuildTicks build_ticks(const MachineConfig& config);
+[[nodiscard]] BuildTicks build_ticks(const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

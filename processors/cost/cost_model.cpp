@@ -6,13 +6,13 @@
 #include "sim/error.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 namespace {
 
 struct Preset {
   std::string_view name;
-  OperationCycles cycles;
+  machine::OperationCycles cycles;
 };
 
 constexpr std::array<std::string_view, 3> names{"unit", "mc68882", "modern"};
@@ -62,13 +62,13 @@ constexpr std::array<Preset, 3> presets{{
 }};
 
 /// Cycles to read one record: an integer operation for its address, then its words.
-std::int64_t read_record(const OperationCycles& cycles, std::int64_t words) {
+std::int64_t read_record(const machine::OperationCycles& cycles, std::int64_t words) {
   return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
 }
 
 }  // namespace
 
-std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed) {
+std::int64_t price(const OperationMix& mix, const machine::OperationCycles& cycles, std::int64_t fixed) {
   // Prices may be anything that fits 64 bits; a sum of six prices times their counts then fits 128.
   __extension__ using Wide = __int128;
   const auto times = [](std::int64_t count, std::int64_t price) { return static_cast<Wide>(count) * price; };
@@ -84,7 +84,7 @@ std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::
 
 std::span<const std::string_view> cost_presets() { return names; }
 
-OperationCycles cost_preset(std::string_view name) {
+machine::OperationCycles cost_preset(std::string_view name) {
   std::string known;
   for (const Preset& preset : presets) {
     if (preset.name == name) {
@@ -95,12 +95,12 @@ OperationCycles cost_preset(std::string_view name) {
   throw sim::UserError("there is no cost preset \"" + std::string(name) + "\"; there are: " + known);
 }
 
-StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, accel::Traversal traversal,
-                       bool mailboxes, Integrator integrator) {
+StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords& words,
+                       accel::Traversal traversal, bool mailboxes, program::Integrator integrator) {
   const OperationMixes& mixes = operation_mixes(traversal);
-  const bool path = integrator == Integrator::path;
+  const bool path = integrator == program::Integrator::path;
   StepCycles steps;
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < program::ray_kinds; ++kind) {
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
   }
   steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
@@ -127,4 +127,4 @@ StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words, 
   return steps;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -12,7 +12,7 @@
 #include "processors/machine/operation_cycles.h"
 #include "processors/program/work_log.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 struct OperationMix;
 
@@ -29,9 +29,9 @@ struct RecordWords {
 
 /// Whole compute cycles of each kind of step.
 struct StepCycles {
-  std::array<std::int64_t, ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
-  std::int64_t branch = 0;                    ///< reading a branch and ordering its children
-  std::int64_t leaf = 0;                      ///< reading a leaf, without its tests
+  std::array<std::int64_t, program::ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
+  std::int64_t branch = 0;                             ///< reading a branch and ordering its children
+  std::int64_t leaf = 0;                               ///< reading a leaf, without its tests
   std::int64_t lookup = 0;  ///< with mailboxes, one entry of a leaf's list: fetch its id, look at its mailbox
   std::int64_t test = 0;    ///< one test: fetch the triangle, and its id unless it was looked up, test it,
                             ///< and with mailboxes leave the ray's number in the mailbox
@@ -50,15 +50,17 @@ struct StepCycles {
 
 /// The costs of a named preset. Throws UserError for an unknown name. Each preset's source is in
 /// cost_model.cpp.
-[[nodiscard]] OperationCycles cost_preset(std::string_view name);
+[[nodiscard]] machine::OperationCycles cost_preset(std::string_view name);
 
 /// The cycles of a mix, rounded to nearest with halves up, plus `fixed` cycles; UserError beyond 64 bits.
-[[nodiscard]] std::int64_t price(const OperationMix& mix, const OperationCycles& cycles, std::int64_t fixed);
+[[nodiscard]] std::int64_t price(const OperationMix& mix, const machine::OperationCycles& cycles,
+                                 std::int64_t fixed);
 
 /// Prices the measured operation mixes of a traversal and a program (operation_mix.h). Rounds each step to
 /// whole cycles, halves up. Mailboxes are words of the node's own memory, one for each primitive.
-[[nodiscard]] StepCycles step_cycles(const OperationCycles& cycles, const RecordWords& words,
+[[nodiscard]] StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords& words,
                                      accel::Traversal traversal = accel::Traversal::octree,
-                                     bool mailboxes = false, Integrator integrator = Integrator::whitted);
+                                     bool mailboxes = false,
+                                     program::Integrator integrator = program::Integrator::whitted);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

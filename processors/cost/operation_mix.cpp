@@ -10,7 +10,7 @@
 #include "processors/program/tracer.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 namespace {
 
@@ -18,7 +18,7 @@ using accel::Counted;
 using accel::OperationCounts;
 
 struct Buckets {
-  std::array<OperationCounts, ray_kinds> ray{};
+  std::array<OperationCounts, program::ray_kinds> ray{};
   OperationCounts branch;
   OperationCounts leaf;
   OperationCounts lookup;
@@ -53,9 +53,9 @@ class CountingRecorder {
 
   void begin_pixel() {}
 
-  void phase(Phase phase, RayKind kind) {
+  void phase(program::Phase phase, program::RayKind kind) {
     close();
-    if (phase == Phase::shade && nearest_wanted_ && best_->found()) {
+    if (phase == program::Phase::shade && nearest_wanted_ && best_->found()) {
       // After a hit closest() ends with dividing three edge functions by their sum: a part of shading.
       current_->divide -= 3;
       buckets_.shade.divide += 3;
@@ -64,11 +64,11 @@ class CountingRecorder {
     current_ = &bucket(phase, kind);
   }
 
-  void ray(RayKind kind, std::uint32_t /*bounce*/, const accel::Ray& ray) {
+  void ray(program::RayKind kind, std::uint32_t /*bounce*/, const accel::Ray& ray) {
     close();
     ++steps_.rays[static_cast<std::size_t>(kind)];
     current_ = &buckets_.ray[static_cast<std::size_t>(kind)];
-    nearest_wanted_ = kind != RayKind::shadow;
+    nearest_wanted_ = kind != program::RayKind::shadow;
     const Uncounted uncounted;
     setup_.emplace(ray);
     best_.emplace(*setup_);
@@ -128,7 +128,7 @@ class CountingRecorder {
   void end() { close(); }
 
   [[nodiscard]] const Buckets& buckets() const { return buckets_; }
-  [[nodiscard]] const LogTotals& steps() const { return steps_; }
+  [[nodiscard]] const program::LogTotals& steps() const { return steps_; }
   [[nodiscard]] const std::array<std::uint64_t, 3>& tests() const { return tests_; }
 
  private:
@@ -153,17 +153,17 @@ class CountingRecorder {
     throw sim::InternalError("operation mix: an unknown traversal");
   }
 
-  OperationCounts& bucket(Phase phase, RayKind kind) {
+  OperationCounts& bucket(program::Phase phase, program::RayKind kind) {
     switch (phase) {
-      case Phase::ray:
+      case program::Phase::ray:
         return buckets_.ray[static_cast<std::size_t>(kind)];
-      case Phase::shade:
+      case program::Phase::shade:
         return buckets_.shade;
-      case Phase::texel:
+      case program::Phase::texel:
         return buckets_.texel;
-      case Phase::light:
+      case program::Phase::light:
         return buckets_.light;
-      case Phase::pixel:
+      case program::Phase::pixel:
         return buckets_.pixel;
     }
     throw sim::InternalError("operation mix: an unknown phase");
@@ -179,7 +179,7 @@ class CountingRecorder {
   Bucket after_leaf_;
   bool mailboxes_;
   Buckets buckets_;
-  LogTotals steps_;
+  program::LogTotals steps_;
   std::array<std::uint64_t, 3> tests_{};
   OperationCounts mark_;
   OperationCounts* current_ = &buckets_.pixel;
@@ -219,14 +219,16 @@ OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps)
 }
 
 MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
-                                      const accel::Structure& structure, const RenderOptions& options) {
+                                      const accel::Structure& structure,
+                                      const program::RenderOptions& options) {
   const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
-  const Emitters emitters = options.integrator == Integrator::path ? Emitters(scene) : Emitters();
+  const program::Emitters emitters =
+      options.integrator == program::Integrator::path ? program::Emitters(scene) : program::Emitters();
   accel::Mailboxed<CountingRecorder> recorder(structure, options.mailboxes);
   const auto trace = [&]<class Recorder>(Recorder& visitor) {
     accel::visit_structure(structure, [&](const auto& concrete) {
       using Concrete = std::remove_cvref_t<decltype(concrete)>;
-      Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, emitters, plane, options, visitor);
+      program::Tracer<Counted, Concrete, Recorder> tracer(scene, concrete, emitters, plane, options, visitor);
       for (std::uint32_t y = 0; y < options.height; ++y) {
         for (std::uint32_t x = 0; x < options.width; ++x) {
           static_cast<void>(tracer.trace(x, y));
@@ -245,8 +247,8 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
   const Buckets& buckets = recorder.buckets();
   MeasuredMixes measured;
   measured.steps = recorder.steps();
-  const LogTotals& steps = measured.steps;
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+  const program::LogTotals& steps = measured.steps;
+  for (std::size_t kind = 0; kind < program::ray_kinds; ++kind) {
     measured.mixes.ray[kind] = mean_mix(buckets.ray[kind], steps.rays[kind]);
   }
   measured.mixes.branch = mean_mix(buckets.branch, steps.branches);
@@ -274,7 +276,7 @@ MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const a
   CountingRecorder recorder(structure, false);
   accel::visit_structure(structure, [&](const auto& concrete) {
     for (const accel::Ray& ray : rays) {
-      recorder.ray(RayKind::camera, 0, ray);
+      recorder.ray(program::RayKind::camera, 0, ray);
       static_cast<void>(concrete.template closest<Counted>(ray, recorder));
     }
   });
@@ -290,7 +292,7 @@ MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const a
 namespace {
 
 /// The mixes in which the traversals differ.
-using RayMixes = std::array<OperationMix, ray_kinds>;
+using RayMixes = std::array<OperationMix, program::ray_kinds>;
 
 struct WalkMixes {
   RayMixes ray;
@@ -388,4 +390,4 @@ const OperationMixes& operation_mixes(accel::Traversal traversal) {
   return table[static_cast<std::size_t>(traversal)];
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -19,7 +19,7 @@ class Structure;
 class TriangleSet;
 }  // namespace marti::accel
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 /// Mean operations of one step, in thousandths of an operation.
 struct OperationMix {
@@ -54,7 +54,7 @@ struct OperationMix {
 ///   cut     with the voxel cut: finding that a node is small and which share of it is covered
 /// Fetching a record's words and computing its address is priced from the layout, beside these.
 struct OperationMixes {
-  std::array<OperationMix, ray_kinds> ray{};
+  std::array<OperationMix, program::ray_kinds> ray{};
   OperationMix branch;
   OperationMix leaf;
   OperationMix lookup;
@@ -81,7 +81,7 @@ struct OperationMixes {
 /// The result of a measurement: the means, and how many steps they are means of.
 struct MeasuredMixes {
   OperationMixes mixes;  ///< all zero for a kind of step that did not occur
-  LogTotals steps;
+  program::LogTotals steps;
   std::array<std::uint64_t, 3> tests{};  ///< of `steps.tests`, each accel::PrimitiveKind
 };
 
@@ -89,7 +89,7 @@ struct MeasuredMixes {
 [[nodiscard]] MeasuredMixes measure_operation_mixes(const scenes::Scene& scene,
                                                     const accel::TriangleSet& triangles,
                                                     const accel::Structure& structure,
-                                                    const RenderOptions& options);
+                                                    const program::RenderOptions& options);
 
 /// Operations that some rays took: sums, not means.
 struct MeasuredWalks {
@@ -97,7 +97,7 @@ struct MeasuredWalks {
   accel::OperationCounts branch;
   accel::OperationCounts leaf;
   accel::OperationCounts test;
-  LogTotals steps;
+  program::LogTotals steps;
 };
 
 /// Finds the nearest hit of each ray with the counting scalar, without mailboxes.
@@ -108,4 +108,4 @@ struct MeasuredWalks {
 /// to the nearest; all 0 without steps.
 [[nodiscard]] OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

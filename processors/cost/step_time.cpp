@@ -1,8 +1,8 @@
 #include "processors/cost/step_time.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
-RecordWords record_words(const MachineConfig& config) {
+RecordWords record_words(const machine::MachineConfig& config) {
   const auto words = [&config](std::uint32_t bytes) {
     return (std::int64_t{bytes} + config.word_bytes - 1) / config.word_bytes;
   };
@@ -12,11 +12,11 @@ RecordWords record_words(const MachineConfig& config) {
           words(layout.pixel_bytes)};
 }
 
-StepTicks step_ticks(const MachineConfig& config, const WorkLog& log) {
+StepTicks step_ticks(const machine::MachineConfig& config, const program::WorkLog& log) {
   const StepCycles cycles =
       step_cycles(config.operations, record_words(config), log.traversal, log.mailboxes, log.integrator);
   StepTicks ticks;
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < program::ray_kinds; ++kind) {
     ticks.ray[kind] = config.clock.cycles(cycles.ray[kind]);
   }
   ticks.branch = config.clock.cycles(cycles.branch);
@@ -45,4 +45,4 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
   add(Activity::cache_access, ticks.hit, hits);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

@@ -6,10 +6,10 @@
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
 
-namespace marti::processors {
+namespace marti::processors::cost {
 
 struct StepTicks {
-  std::array<sim::Ticks, ray_kinds> ray{};
+  std::array<sim::Ticks, program::ray_kinds> ray{};
   sim::Ticks branch = 0;
   sim::Ticks leaf = 0;
   sim::Ticks lookup = 0;  ///< looking up the mailbox of one entry; 0 without mailboxes
@@ -26,16 +26,16 @@ struct StepTicks {
 };
 
 /// The times on this machine of the steps of the traversal that made `log`.
-[[nodiscard]] StepTicks step_ticks(const MachineConfig& config, const WorkLog& log);
+[[nodiscard]] StepTicks step_ticks(const machine::MachineConfig& config, const program::WorkLog& log);
 
 /// The words of each record, as this machine's layout has it.
-[[nodiscard]] RecordWords record_words(const MachineConfig& config);
+[[nodiscard]] RecordWords record_words(const machine::MachineConfig& config);
 
 /// Calls visit(activity, cost of one such step, number of steps) for each kind of step. `costs` is StepTicks
 /// or StepCycles.
 template <class Costs, class Visit>
 void for_each_step(const Costs& costs, const StepCounts& steps, Visit&& visit) {
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < program::ray_kinds; ++kind) {
     visit(Activity::traversal, costs.ray[kind], steps.*ray_counters[kind]);
   }
   visit(Activity::traversal, costs.branch, steps.branches);
@@ -72,4 +72,4 @@ void add_counted_time(const StepTicks& ticks, const StepCounts& steps, std::int6
   return ticks.test;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::cost

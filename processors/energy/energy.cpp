@@ -9,7 +9,7 @@
 #include "processors/energy/energy_units.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 namespace {
 
@@ -48,17 +48,17 @@ class Sum {
 constexpr std::int64_t attojoules_a_femtojoule = 1000;
 constexpr std::int64_t yoctojoules_a_femtojoule = 1'000'000'000;
 
-std::int64_t of_operations(const MachineConfig& config, const EnergyUnits& units,
+std::int64_t of_operations(const machine::MachineConfig& config, const EnergyUnits& units,
                            const EnergyCounts& counts) {
   Sum sum("the energy of operations");
   // The costs of steps and splits are sums of those of operations: in cycles, or here in aJ.
-  const RecordWords words = record_words(config);
-  for_each_step(step_cycles(units.operations, words, counts.traversal, counts.mailboxes, counts.integrator),
-                counts.steps, [&sum](Activity /*activity*/, std::int64_t each, std::int64_t count) {
-                  sum.add(each, count);
-                });
-  for_each_build_part(build_cycles(units.operations, words), counts.build,
-                      [&sum](std::int64_t each, std::int64_t count) { sum.add(each, count); });
+  const cost::RecordWords words = cost::record_words(config);
+  cost::for_each_step(
+      cost::step_cycles(units.operations, words, counts.traversal, counts.mailboxes, counts.integrator),
+      counts.steps,
+      [&sum](cost::Activity /*activity*/, std::int64_t each, std::int64_t count) { sum.add(each, count); });
+  node::for_each_build_part(cost::build_cycles(units.operations, words), counts.build,
+                            [&sum](std::int64_t each, std::int64_t count) { sum.add(each, count); });
   return sum.in_units_of(attojoules_a_femtojoule);
 }
 
@@ -69,7 +69,7 @@ void add_cache(const CacheUnits& units, const memory::CacheCounters& counts, Sum
 
 std::int64_t of_first_level(const EnergyUnits& units, const EnergyCounts& counts) {
   Sum sum("the energy of first-level caches");
-  for (std::size_t i = 0; i < split_caches; ++i) {
+  for (std::size_t i = 0; i < machine::split_caches; ++i) {
     add_cache(units.l1.at(i), counts.l1.at(i), sum);
   }
   sum.add(units.l1[0].write, counts.l1_prefetches);
@@ -99,7 +99,7 @@ std::int64_t of_memory(const EnergyUnits& units, const EnergyCounts& counts) {
   return sum.in_units_of(attojoules_a_femtojoule);
 }
 
-std::int64_t area_of(const MachineConfig& config, const EnergyUnits& units) {
+std::int64_t area_of(const machine::MachineConfig& config, const EnergyUnits& units) {
   Sum sum("the area of the machine");
   sum.add(units.node_area, config.all_nodes());
   sum.add(units.cluster_area, config.clusters);
@@ -117,13 +117,13 @@ std::int64_t of_leakage(const EnergyUnits& units, std::int64_t area, sim::Ticks 
 
 }  // namespace
 
-void check_energy(const MachineConfig& config) {
+void check_energy(const machine::MachineConfig& config) {
   if (config.energy.on()) {
     (void)energy_units(config);
   }
 }
 
-EnergyResult energy_of(const MachineConfig& config, const EnergyCounts& counts) {
+EnergyResult energy_of(const machine::MachineConfig& config, const EnergyCounts& counts) {
   const EnergyUnits units = energy_units(config);
   EnergyResult result;
   result.operations = of_operations(config, units, counts);
@@ -141,4 +141,4 @@ EnergyResult energy_of(const MachineConfig& config, const EnergyCounts& counts) 
   return result;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

@@ -13,18 +13,18 @@
 #include "sim/statistics.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 /// What takes energy, of all nodes and clusters together.
 struct EnergyCounts {
   accel::Traversal traversal = accel::Traversal::octree;
   bool mailboxes = false;
-  Integrator integrator = Integrator::whitted;
-  StepCounts steps;
-  BuildCounts build;
+  program::Integrator integrator = program::Integrator::whitted;
+  cost::StepCounts steps;
+  node::BuildCounts build;
   /// Look-ups that hit and miss in the nodes' own caches; a miss brings its line in. Split caches in their
   /// order, a unified one at place 0.
-  std::array<memory::CacheCounters, split_caches> l1;
+  std::array<memory::CacheCounters, machine::split_caches> l1;
   std::int64_t l1_prefetches = 0;  ///< lines brought in beside the misses, into the cache at place 0
   memory::CacheCounters l2;
   std::int64_t interconnect_bytes = 0;  ///< between nodes and shared memory
@@ -66,10 +66,10 @@ static_assert(sim::declares_every_member<EnergyResult>());
 inline constexpr std::size_t energy_parts = 6;
 
 /// Throws KeyError when a figure that the machine needs is not known, or is out of range.
-void check_energy(const MachineConfig& config);
+void check_energy(const machine::MachineConfig& config);
 
 /// Each part is rounded once, to the nearest fJ. The energy must be on. Throws as check_energy() does, and
 /// KeyError for an energy or an area that does not fit 64 bits.
-[[nodiscard]] EnergyResult energy_of(const MachineConfig& config, const EnergyCounts& counts);
+[[nodiscard]] EnergyResult energy_of(const machine::MachineConfig& config, const EnergyCounts& counts);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 namespace {
 
@@ -62,74 +62,75 @@ constexpr std::array<CacheFits, 2> fits = {{
 // divider .112, integer multiplier .0117 and adder .00066, registers .0148 mm2), times the square of 45 / 65;
 // of a context, its registers. Leakage: the geometric mean over the caches that the fits were made of, at 360
 // K. Horowitz, Keckler and, below, Dally are taken from later papers that quote them, not from the originals.
-constexpr EnergyFigures nm45 = {.add = 0.9,
-                                .multiply = 3.7,
-                                .divide = 26.3,
-                                .square_root = 26.3,
-                                .compare = 0.1,
-                                .integer = 0.1,
-                                .load = 0.1,
-                                .store = 0.1,
-                                .instruction = 70.0,
-                                .l1 = {},
-                                .l2 = {},
-                                .wire = 0.121,
-                                .interconnect_length = 10.0,
-                                .hop_length = 2.0,
-                                .memory_access = 3450.0,
-                                .memory_read = 45.8,
-                                .memory_write = 39.8,
-                                .node_area = 0.076,
-                                .context_area = 0.0071,
-                                .leakage_density = 226.0};
+constexpr machine::EnergyFigures nm45 = {.add = 0.9,
+                                         .multiply = 3.7,
+                                         .divide = 26.3,
+                                         .square_root = 26.3,
+                                         .compare = 0.1,
+                                         .integer = 0.1,
+                                         .load = 0.1,
+                                         .store = 0.1,
+                                         .instruction = 70.0,
+                                         .l1 = {},
+                                         .l2 = {},
+                                         .wire = 0.121,
+                                         .interconnect_length = 10.0,
+                                         .hop_length = 2.0,
+                                         .memory_access = 3450.0,
+                                         .memory_read = 45.8,
+                                         .memory_write = 39.8,
+                                         .node_area = 0.076,
+                                         .context_area = 0.0071,
+                                         .leakage_density = 226.0};
 
 // 22 nm. Operations: those of 45 nm times 0.29, the ratio of the two technologies' reads of caches (geometric
 // mean over the same 87). Wires: 100 fJ a bit and mm (Dally, Turakhia, Han, Domain-specific hardware
 // accelerators, Communications of the ACM 63(7), 2020). Their figure is for wires of about 14 nm; no
 // correction to 22 nm is made. Lengths: half of those of 45 nm. Areas: times the square of 22 / 65.
-constexpr EnergyFigures nm22 = {.add = 0.261,
-                                .multiply = 1.073,
-                                .divide = 7.627,
-                                .square_root = 7.627,
-                                .compare = 0.029,
-                                .integer = 0.029,
-                                .load = 0.029,
-                                .store = 0.029,
-                                .instruction = 20.3,
-                                .l1 = {},
-                                .l2 = {},
-                                .wire = 0.1,
-                                .interconnect_length = 5.0,
-                                .hop_length = 1.0,
-                                .memory_access = 3450.0,
-                                .memory_read = 45.8,
-                                .memory_write = 39.8,
-                                .node_area = 0.0182,
-                                .context_area = 0.0017,
-                                .leakage_density = 225.0};
+constexpr machine::EnergyFigures nm22 = {.add = 0.261,
+                                         .multiply = 1.073,
+                                         .divide = 7.627,
+                                         .square_root = 7.627,
+                                         .compare = 0.029,
+                                         .integer = 0.029,
+                                         .load = 0.029,
+                                         .store = 0.029,
+                                         .instruction = 20.3,
+                                         .l1 = {},
+                                         .l2 = {},
+                                         .wire = 0.1,
+                                         .interconnect_length = 5.0,
+                                         .hop_length = 1.0,
+                                         .memory_access = 3450.0,
+                                         .memory_read = 45.8,
+                                         .memory_write = 39.8,
+                                         .node_area = 0.0182,
+                                         .context_area = 0.0017,
+                                         .leakage_density = 225.0};
 
 }  // namespace
 
-EnergyFigures energy_figures(EnergyPreset preset) {
+machine::EnergyFigures energy_figures(machine::EnergyPreset preset) {
   switch (preset) {
-    case EnergyPreset::none:
+    case machine::EnergyPreset::none:
       break;
-    case EnergyPreset::nm45:
+    case machine::EnergyPreset::nm45:
       return nm45;
-    case EnergyPreset::nm22:
+    case machine::EnergyPreset::nm22:
       return nm22;
   }
   return {};
 }
 
-std::optional<CacheFigures> fitted_cache(EnergyPreset preset, const memory::CacheConfig& cache) {
+std::optional<machine::CacheFigures> fitted_cache(machine::EnergyPreset preset,
+                                                  const memory::CacheConfig& cache) {
   const bool fitted = cache.size >= least_fitted_size && cache.size <= most_fitted_size &&
                       cache.line >= least_fitted_line && cache.line <= most_fitted_line;
-  if (preset == EnergyPreset::none || !fitted) {
+  if (preset == machine::EnergyPreset::none || !fitted) {
     return std::nullopt;
   }
-  const CacheFits& fit = fits.at(preset == EnergyPreset::nm45 ? 0 : 1);
-  return CacheFigures{fit.read.at(cache), fit.write.at(cache), fit.area.at(cache) / 1e6};
+  const CacheFits& fit = fits.at(preset == machine::EnergyPreset::nm45 ? 0 : 1);
+  return machine::CacheFigures{fit.read.at(cache), fit.write.at(cache), fit.area.at(cache) / 1e6};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

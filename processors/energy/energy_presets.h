@@ -7,11 +7,11 @@
 #include "memory/cache_config.h"
 #include "processors/machine/energy_config.h"
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 /// The figures of a preset; their sources are in energy_presets.cpp. Those of caches are by_fit. All 0 for
 /// `none`.
-[[nodiscard]] EnergyFigures energy_figures(EnergyPreset preset);
+[[nodiscard]] machine::EnergyFigures energy_figures(machine::EnergyPreset preset);
 
 /// The caches that the fit was made of: sizes and lines in bytes. A cache of more ways than most_fitted_ways
 /// takes as much as one of so many: nobody builds one that reads them all.
@@ -22,6 +22,7 @@ inline constexpr std::uint32_t most_fitted_line = 64;
 inline constexpr std::uint32_t most_fitted_ways = 8;
 
 /// All three figures of a cache, by the fit; std::nullopt outside what it was made of, and for `none`.
-[[nodiscard]] std::optional<CacheFigures> fitted_cache(EnergyPreset preset, const memory::CacheConfig& cache);
+[[nodiscard]] std::optional<machine::CacheFigures> fitted_cache(machine::EnergyPreset preset,
+                                                                const memory::CacheConfig& cache);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

@@ -9,7 +9,7 @@
 #include "sim/key_error.h"
 #include "sim/units.h"
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 namespace {
 
@@ -33,14 +33,14 @@ std::int64_t whole(std::string_view key, double figure, double times) {
 }
 
 // What switches takes the square of the voltage.
-std::int64_t switched(const EnergyConfig& energy, std::string_view key, double picojoules) {
+std::int64_t switched(const machine::EnergyConfig& energy, std::string_view key, double picojoules) {
   require_range("voltage", energy.voltage, most_voltage);
   const auto nominal = static_cast<double>(whole(key, picojoules, attojoules_a_picojoule));
   return std::llround(nominal * energy.voltage * energy.voltage);
 }
 
-OperationCycles operations_of(const EnergyConfig& energy) {
-  const EnergyFigures& figures = energy.figures;
+machine::OperationCycles operations_of(const machine::EnergyConfig& energy) {
+  const machine::EnergyFigures& figures = energy.figures;
   const auto operation = [&](std::string_view key, double picojoules) {
     require_range(key, picojoules, most_of_operation);
     return switched(energy, key, picojoules);
@@ -67,12 +67,13 @@ struct NamedCache {
 };
 
 // The cache's figures: those that are given, for the others the fit's.
-CacheFigures figures_of(const EnergyConfig& energy, const NamedCache& named) {
-  CacheFigures figures = named.level == "l1" ? energy.figures.l1 : energy.figures.l2;
-  if (figures.read != by_fit && figures.write != by_fit && figures.area != by_fit) {
+machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const NamedCache& named) {
+  machine::CacheFigures figures = named.level == "l1" ? energy.figures.l1 : energy.figures.l2;
+  if (figures.read != machine::by_fit && figures.write != machine::by_fit &&
+      figures.area != machine::by_fit) {
     return figures;
   }
-  const std::optional<CacheFigures> fitted = fitted_cache(energy.preset, named.cache);
+  const std::optional<machine::CacheFigures> fitted = fitted_cache(energy.preset, named.cache);
   if (!fitted) {
     const std::string level = "energy." + std::string(named.level);
     throw sim::KeyError(
@@ -84,8 +85,9 @@ CacheFigures figures_of(const EnergyConfig& energy, const NamedCache& named) {
             " to " + std::to_string(most_fitted_line) + " bytes; give " + level + "_read, " + level +
             "_write and " + level + "_area");
   }
-  for (const auto member : {&CacheFigures::read, &CacheFigures::write, &CacheFigures::area}) {
-    if (figures.*member == by_fit) {
+  for (const auto member :
+       {&machine::CacheFigures::read, &machine::CacheFigures::write, &machine::CacheFigures::area}) {
+    if (figures.*member == machine::by_fit) {
       figures.*member = (*fitted).*member;
     }
   }
@@ -93,24 +95,25 @@ CacheFigures figures_of(const EnergyConfig& energy, const NamedCache& named) {
 }
 
 // Adds the cache's area; returns its energies.
-CacheUnits add_cache(const EnergyConfig& energy, const NamedCache& named, Wide& area) {
-  const CacheFigures figures = figures_of(energy, named);
+CacheUnits add_cache(const machine::EnergyConfig& energy, const NamedCache& named, Wide& area) {
+  const machine::CacheFigures figures = figures_of(energy, named);
   const std::string level(named.level);
   area += whole(level + "_area", figures.area, square_micrometres_a_square_millimetre);
   return {switched(energy, level + "_read", figures.read), switched(energy, level + "_write", figures.write)};
 }
 
-void add_first_level(const MachineConfig& config, EnergyUnits& units) {
-  const NodeCacheConfig& caches = config.cache;
+void add_first_level(const machine::MachineConfig& config, EnergyUnits& units) {
+  const machine::NodeCacheConfig& caches = config.cache;
   switch (caches.organisation) {
-    case CacheOrganisation::none:
+    case machine::CacheOrganisation::none:
       break;
-    case CacheOrganisation::unified:
+    case machine::CacheOrganisation::unified:
       units.l1[0] = add_cache(config.energy, {caches.cache, "cache.size", "l1"}, units.node_area);
       break;
-    case CacheOrganisation::split:
-      for (std::size_t i = 0; i < split_caches; ++i) {
-        NamedCache named{caches.cache, "cache." + std::string(split_cache_names.at(i)) + "_size", "l1"};
+    case machine::CacheOrganisation::split:
+      for (std::size_t i = 0; i < machine::split_caches; ++i) {
+        NamedCache named{caches.cache, "cache." + std::string(machine::split_cache_names.at(i)) + "_size",
+                         "l1"};
         named.cache.size = caches.split_sizes.at(i);
         units.l1.at(i) = add_cache(config.energy, named, units.node_area);
       }
@@ -118,18 +121,18 @@ void add_first_level(const MachineConfig& config, EnergyUnits& units) {
   }
 }
 
-void add_second_level(const MachineConfig& config, EnergyUnits& units) {
-  if (config.l2.sharing != SecondLevel::none) {
-    Wide& area = config.l2.sharing == SecondLevel::shared ? units.cluster_area : units.node_area;
-    units.l2 = add_cache(config.energy, {second_level_cache(config), "l2.size", "l2"}, area);
+void add_second_level(const machine::MachineConfig& config, EnergyUnits& units) {
+  if (config.l2.sharing != machine::SecondLevel::none) {
+    Wide& area = config.l2.sharing == machine::SecondLevel::shared ? units.cluster_area : units.node_area;
+    units.l2 = add_cache(config.energy, {machine::second_level_cache(config), "l2.size", "l2"}, area);
   }
 }
 
 }  // namespace
 
-EnergyUnits energy_units(const MachineConfig& config) {
-  const EnergyConfig& energy = config.energy;
-  const EnergyFigures& figures = energy.figures;
+EnergyUnits energy_units(const machine::MachineConfig& config) {
+  const machine::EnergyConfig& energy = config.energy;
+  const machine::EnergyFigures& figures = energy.figures;
   EnergyUnits units;
   units.operations = operations_of(energy);
   add_first_level(config, units);
@@ -156,4 +159,4 @@ EnergyUnits energy_units(const MachineConfig& config) {
   return units;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

@@ -7,7 +7,7 @@
 #include "processors/machine/machine_config.h"
 #include "processors/machine/operation_cycles.h"
 
-namespace marti::processors {
+namespace marti::processors::energy {
 
 __extension__ using Wide = __int128;
 
@@ -25,8 +25,8 @@ struct CacheUnits {
 
 /// Energies in aJ (1e-18 J, a millionth of a pJ) at the machine's voltage, areas in um2, leakage in pW a um2.
 struct EnergyUnits {
-  OperationCycles operations;  ///< aJ where the cost model has cycles
-  std::array<CacheUnits, split_caches> l1;
+  machine::OperationCycles operations;  ///< aJ where the cost model has cycles
+  std::array<CacheUnits, machine::split_caches> l1;
   CacheUnits l2;
   std::int64_t interconnect_byte = 0;
   std::int64_t hop_byte = 0;
@@ -41,6 +41,6 @@ struct EnergyUnits {
 };
 
 /// Throws KeyError when a figure that the machine needs is not known, or is out of range.
-[[nodiscard]] EnergyUnits energy_units(const MachineConfig& config);
+[[nodiscard]] EnergyUnits energy_units(const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::energy

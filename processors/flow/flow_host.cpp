@@ -3,10 +3,10 @@
 #include "processors/program/ray_tree.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
-FlowHost::FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config,
-                   std::uint32_t limit, sim::WorkMeter* meter)
+FlowHost::FlowHost(const program::WorkLog& log, const machine::PacketList& packets,
+                   const machine::MachineConfig& config, std::uint32_t limit, sim::WorkMeter* meter)
     : log_(log),
       packets_(packets),
       meter_(meter),
@@ -47,7 +47,7 @@ SentSample FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
   sim::ensure(has_ray(cluster) && way.in_flight > 0 && way.ready_at <= now,
               "the host sends a camera ray too early");
   const std::span<const std::uint32_t> words = log_.pixel(way.x, way.y);
-  const SentSample sample = {first_sample(log_, words.subspan(way.word)), {way.x, way.y}};
+  const SentSample sample = {program::first_sample(log_, words.subspan(way.word)), {way.x, way.y}};
   way.word += sample.words.size();
   if (way.word == words.size()) {
     ++way.x;
@@ -59,4 +59,4 @@ SentSample FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
   return sample;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

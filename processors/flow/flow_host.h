@@ -19,20 +19,20 @@
 #include "processors/program/work_log.h"
 #include "processors/walk/observer.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// A sample of a pixel whose camera ray has been sent, and its words in the log.
 struct SentSample {
   std::span<const std::uint32_t> words;
-  PixelPlace place;
+  walk::PixelPlace place;
 };
 
 class FlowHost {
  public:
   /// At most `limit` rays may be in flight in each cluster. Each packet whose rays are next is counted on
   /// `meter`, which may be null.
-  FlowHost(const WorkLog& log, const PacketList& packets, const MachineConfig& config, std::uint32_t limit,
-           sim::WorkMeter* meter = nullptr);
+  FlowHost(const program::WorkLog& log, const machine::PacketList& packets,
+           const machine::MachineConfig& config, std::uint32_t limit, sim::WorkMeter* meter = nullptr);
 
   /// Whether a camera ray is left for the cluster. Skips pixels without rays. Takes a packet when the
   /// cluster's is used up, so clusters must ask in the order of simulated time, each from its own event.
@@ -69,21 +69,21 @@ class FlowHost {
   /// When the last contribution arrived.
   [[nodiscard]] sim::Ticks last_arrival() const { return last_arrival_; }
   /// `requests` is the number of camera rays sent.
-  [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const node::HostStatistics& statistics() const { return statistics_; }
 
  private:
   struct Way {
     sim::Ticks ready_at = 0;
     std::uint32_t in_flight = 0;
     bool drawn = false;  // has a packet with pixels left
-    Packet packet;
+    machine::Packet packet;
     std::uint32_t x = 0;
     std::uint32_t y = 0;
     std::size_t word = 0;  // in the pixel: words before it belong to samples already sent
   };
 
-  const WorkLog& log_;
-  const PacketList& packets_;
+  const program::WorkLog& log_;
+  const machine::PacketList& packets_;
   sim::WorkMeter* meter_;
   std::uint32_t limit_;
   sim::Ticks occupancy_;
@@ -93,7 +93,7 @@ class FlowHost {
   std::int64_t most_in_flight_ = 0;
   std::int64_t collected_ = 0;
   sim::Ticks last_arrival_ = 0;
-  HostStatistics statistics_;
+  node::HostStatistics statistics_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -14,7 +14,7 @@
 #include "processors/walk/observer.h"
 #include "sim/large_pages.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// `Derived` has read_done(node, service), called when a read that the node waits for has been served.
 template <class Derived>
@@ -25,7 +25,9 @@ class FlowNodesBase : public FlowNodes {
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return std::max(end_, host_.last_arrival()); }
-  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
+  std::vector<cost::NodeStatistics> statistics() const override {
+    return {statistics_.begin(), statistics_.end()};
+  }
   void report(FlowResult& result) const override {
     result.nodes.assign(counts_.begin(), counts_.end());
     for (FlowCounts& node : result.nodes) {
@@ -52,7 +54,7 @@ class FlowNodesBase : public FlowNodes {
 
   // The numbers of all clusters, in an order drawn from `seed` (0: ascending).
   [[nodiscard]] std::vector<std::uint32_t> first_order(std::uint64_t seed) const {
-    return order_drawn_from(seed, input_.config.clusters);
+    return node::order_drawn_from(seed, input_.config.clusters);
   }
 
   std::uint32_t cluster_of(std::uint32_t node) const {
@@ -71,37 +73,37 @@ class FlowNodesBase : public FlowNodes {
   void post(FlowEvent event, sim::Ticks time, std::uint32_t component) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event), component));
   }
-  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+  void spend(std::uint32_t node, cost::Activity activity, sim::Ticks time) {
     statistics_[node].time[static_cast<std::size_t>(activity)] += time;
   }
   void spend(std::uint32_t node, const memory::Service& service) {
-    add_service(statistics_[node].time, service);
+    cost::add_service(statistics_[node].time, service);
   }
 
   // Tells the observer, if there is one, that the node was in `state` from the last time told until `to`.
-  void watch(std::uint32_t node, NodeState state, sim::Ticks to, PixelPlace place = {}) {
+  void watch(std::uint32_t node, walk::NodeState state, sim::Ticks to, walk::PixelPlace place = {}) {
     if (input_.observer != nullptr && watched_[node].until != to) {
       input_.observer->spent(node, state, watched_[node].until, to, place);
       watched_[node].until = to;
     }
   }
   // Tells the observer of a read that the node has waited for since the last time told.
-  void watch_read(std::uint32_t node, const memory::Service& service, PixelPlace place) {
+  void watch_read(std::uint32_t node, const memory::Service& service, walk::PixelPlace place) {
     if (input_.observer != nullptr) {
-      spent_reading(*input_.observer, node, service, watched_[node].until, place);
+      walk::spent_reading(*input_.observer, node, service, watched_[node].until, place);
       watched_[node].until = service.done;
     }
   }
   // Tells the observer of work for a ray since the last time told, and of the misses in it. `word`: the ray's
   // first step that is not taken yet.
-  void watch_work(std::uint32_t node, sim::Ticks to, PixelPlace place, const std::uint32_t* word) {
+  void watch_work(std::uint32_t node, sim::Ticks to, walk::PixelPlace place, const std::uint32_t* word) {
     if (input_.causes != nullptr) {
       const std::span<const std::uint32_t> words = input_.log.pixel(place.x, place.y);
       input_.causes->worked(
           node, statistics_[node],
           {place.y * input_.log.width + place.x, static_cast<std::uint32_t>(word - words.data())});
     }
-    watch(node, NodeState::working, to, place);
+    watch(node, walk::NodeState::working, to, place);
     if (input_.observer != nullptr) {
       const std::int64_t all = statistics_[node].references.all_misses();
       if (const std::int64_t more = all - std::exchange(watched_[node].misses, all); more != 0) {
@@ -129,7 +131,7 @@ class FlowNodesBase : public FlowNodes {
     const sim::Ticks arrival =
         networks_[cluster_of(from)]->send(now, port_of(from), input_.config.nodes, bytes).arrival;
     if (input_.causes != nullptr) [[unlikely]] {
-      input_.causes->sent({RayMessage::none, from, 0, bytes, false, now, arrival});
+      input_.causes->sent({walk::RayMessage::none, from, 0, bytes, false, now, arrival});
     }
     host_.collect(arrival);
   }
@@ -149,21 +151,22 @@ class FlowNodesBase : public FlowNodes {
   // Completes the node's time: adds what follows from counts, and the idle time after its `finish`.
   template <class Walker>
   void finish_node(std::uint32_t node, const Walker& walker) {
-    NodeStatistics& statistics = statistics_[node];
+    cost::NodeStatistics& statistics = statistics_[node];
     walker.flush(tallies_[node], statistics);
-    add_counted_time(walker.ticks(), statistics.steps, statistics.references.all_hits(), statistics.time);
-    statistics.time[static_cast<std::size_t>(Activity::idle)] = end() - statistics.finish;
-    watch(node, NodeState::idle, end());
+    cost::add_counted_time(walker.ticks(), statistics.steps, statistics.references.all_hits(),
+                           statistics.time);
+    statistics.time[static_cast<std::size_t>(cost::Activity::idle)] = end() - statistics.finish;
+    watch(node, walk::NodeState::idle, end());
   }
 
-  ReplayInput input_;
+  walk::ReplayInput input_;
   sim::Engine& engine_;
   FlowHost& host_;
   std::vector<memory::Network*> networks_;
-  sim::LargeVector<NodeStatistics> statistics_;
+  sim::LargeVector<cost::NodeStatistics> statistics_;
   sim::LargeVector<FlowCounts> counts_;
-  sim::LargeVector<VisitTally> tallies_;  // planned visits that are not in the statistics yet
-  sim::Ticks end_ = 0;                    // of the nodes' work so far
+  sim::LargeVector<walk::VisitTally> tallies_;  // planned visits that are not in the statistics yet
+  sim::Ticks end_ = 0;                          // of the nodes' work so far
 
  private:
   // One cluster's ports, with port numbers turned into node numbers. Pixels are kept by the host, so there
@@ -189,7 +192,7 @@ class FlowNodesBase : public FlowNodes {
 
   std::vector<Watched> watched_;  // empty without an observer
   std::vector<Client> clients_;
-  ClusterInterconnects interconnects_;
+  node::ClusterInterconnects interconnects_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -8,15 +8,15 @@
 #include "processors/flow/flow_result.h"
 #include "processors/node/node_array.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// Event classes of these schemes. At equal times the order is: progress inside a node, arrivals and
 /// completions, events that wake a node, the host, the memory. Classes shared with the image scheme keep
 /// their numbers, because the memory posts them.
 enum class FlowEvent : std::uint8_t {
-  step = static_cast<std::uint8_t>(EventClass::step),
-  reply = static_cast<std::uint8_t>(EventClass::reply),
-  read = static_cast<std::uint8_t>(EventClass::read),
+  step = static_cast<std::uint8_t>(node::EventClass::step),
+  reply = static_cast<std::uint8_t>(node::EventClass::reply),
+  read = static_cast<std::uint8_t>(node::EventClass::read),
   done = 8,    ///< a node has finished its work on a ray
   wake = 9,    ///< a node without work looks for a ray
   admit = 10,  ///< the host looks for camera rays that it may send; the component is the cluster
@@ -24,7 +24,7 @@ enum class FlowEvent : std::uint8_t {
 };
 
 /// The nodes of all clusters, between which rays move.
-class FlowNodes : public NodeArray {
+class FlowNodes : public node::NodeArray {
  public:
   /// After finish(): fills in the nodes' counts; those of the host and the networks are left to the caller.
   virtual void report(FlowResult& result) const = 0;
@@ -32,10 +32,10 @@ class FlowNodes : public NodeArray {
 
 /// The objects that such nodes are made with; all of them outlive the nodes.
 struct FlowParts {
-  const ReplayInput& input;
+  const walk::ReplayInput& input;
   sim::Engine& engine;
   FlowHost& host;
   std::vector<memory::Network*> networks;  ///< one a cluster; the host is port MachineConfig::nodes
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -10,7 +10,7 @@
 #include "sim/statistics.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// The rays and messages of one node.
 struct FlowCounts {
@@ -62,4 +62,4 @@ struct FlowResult {
   sim::Ticks sampling_work = 0;                     ///< space: compute time of a pre-pass before the frame
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// Nodes 0 to nodes - 1 in the order of their loads. A node without room is left out.
 ///
@@ -123,4 +123,4 @@ class LoadOrder {
   std::vector<std::uint64_t> bits_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

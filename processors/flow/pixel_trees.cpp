@@ -2,7 +2,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 std::uint32_t PixelTrees::open(const SentSample& sample) {
   if (free_.empty()) {
@@ -11,7 +11,7 @@ std::uint32_t PixelTrees::open(const SentSample& sample) {
   }
   const std::uint32_t tree = free_.back();
   free_.pop_back();
-  rays_of_sample(sample.words, trees_[tree].rays);
+  program::rays_of_sample(sample.words, trees_[tree].rays);
   sim::ensure(!trees_[tree].rays.empty(), "a sample's words belong to no ray");
   trees_[tree].place = sample.place;
   trees_[tree].alive = 1;
@@ -24,4 +24,4 @@ void PixelTrees::end_ray(std::uint32_t tree) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

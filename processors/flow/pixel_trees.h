@@ -8,17 +8,17 @@
 #include "processors/flow/flow_host.h"
 #include "processors/program/ray_tree.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 class PixelTrees {
  public:
   /// Makes the tree of a sample with at least one ray. Its camera ray is ray 0 and is counted as alive.
   std::uint32_t open(const SentSample& sample);
 
-  [[nodiscard]] const LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
+  [[nodiscard]] const program::LoggedRay& ray(std::uint32_t tree, std::uint32_t number) const {
     return trees_[tree].rays[number];
   }
-  [[nodiscard]] PixelPlace place(std::uint32_t tree) const { return trees_[tree].place; }
+  [[nodiscard]] walk::PixelPlace place(std::uint32_t tree) const { return trees_[tree].place; }
   /// Counts one more live ray of the tree.
   void begin_ray(std::uint32_t tree) { ++trees_[tree].alive; }
   /// Ends a ray whose children have been counted; the tree is freed when no ray is alive.
@@ -26,12 +26,12 @@ class PixelTrees {
 
  private:
   struct Tree {
-    std::vector<LoggedRay> rays;
-    PixelPlace place;
+    std::vector<program::LoggedRay> rays;
+    walk::PixelPlace place;
     std::uint32_t alive = 0;
   };
   std::vector<Tree> trees_;
   std::vector<std::uint32_t> free_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

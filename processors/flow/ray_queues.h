@@ -8,7 +8,7 @@
 #include "sim/large_pages.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// A ray on its way to a node, in a queue, or in service at a node.
 struct FlowRay {
@@ -19,7 +19,7 @@ struct FlowRay {
   std::uint32_t tree = 0;    ///< the tree of its sample
   std::uint32_t number = 0;  ///< in the tree
   std::uint32_t from = 0;    ///< the node that sends it when a slot is free
-  RayKind kind = RayKind::camera;
+  program::RayKind kind = program::RayKind::camera;
   bool record_read = false;  ///< the record of the leaf at `word` was read
   bool lit = false;          ///< a light's contribution was added
 };
@@ -92,4 +92,4 @@ struct RayQueue {
   }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// given: the whole tree is there when the frame begins and costs nothing. none: the whole tree is built
 /// before the frame, and its time counts. shared: the initial tree is built before the frame; each node below
@@ -26,4 +26,4 @@ struct BuildConfig {
   double rule_k = 10.0;     ///< 3 is the worst case of the paper's theory, 10 what it recommends
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

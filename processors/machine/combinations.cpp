@@ -2,7 +2,7 @@
 
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 namespace {
 
@@ -104,4 +104,4 @@ void check_combinations(const MachineConfig& config) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -10,7 +10,7 @@
 
 #include "processors/machine/machine_config.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 enum class Feature : std::uint8_t {
   contexts,
@@ -61,4 +61,4 @@ struct RefusedPair {
 /// Throws KeyError, which names the keys of both, when `config` has two features that do not combine.
 void check_combinations(const MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -3,7 +3,7 @@
 #include "processors/machine/combinations.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 void check_contexts(const MachineConfig& config) {
   if (config.contexts == 0 || config.contexts > most_contexts) {
@@ -37,4 +37,4 @@ void check_prefetch(const PrefetchConfig& config, accel::Traversal traversal) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -5,7 +5,7 @@
 
 #include "accel/traversal.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// The most contexts of one node, and the most prefetches under way.
 inline constexpr std::uint32_t most_contexts = 256;
@@ -29,4 +29,4 @@ struct PrefetchConfig {
 /// Throws UserError when children are to be prefetched in a grid, whose cells have no children.
 void check_prefetch(const PrefetchConfig& config, accel::Traversal traversal);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -3,7 +3,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 std::string_view key_of(const CountConfig& count) {
   return count.miss_classes ? "count.miss_classes" : count.sharing ? "count.sharing" : "count.attribution";
@@ -16,4 +16,4 @@ void check_counting(const MachineConfig& config) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

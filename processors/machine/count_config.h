@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 struct CountConfig {
   bool miss_classes = false;  ///< why first-level caches missed
@@ -18,4 +18,4 @@ struct CountConfig {
 /// The key of the first count that is asked for, for messages. At least one must be.
 [[nodiscard]] std::string_view key_of(const CountConfig& count);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

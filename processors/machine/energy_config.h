@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// The technology whose figures hold where none is given. none: no energy is worked out.
 enum class EnergyPreset : std::uint8_t { none, nm45, nm22 };
@@ -53,4 +53,4 @@ struct EnergyConfig {
   [[nodiscard]] bool on() const { return preset != EnergyPreset::none; }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

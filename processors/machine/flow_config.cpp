@@ -7,7 +7,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 namespace {
 
@@ -70,4 +70,4 @@ void check_flow(const MachineConfig& config) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// image: a node takes a packet of pixels and traces it whole. pipeline: nodes search, intersect or shade,
 /// and rays go round between them (after LINKS-1). space: a node holds a part of space, and rays go to the
@@ -56,4 +56,4 @@ struct SpaceConfig {
   std::uint32_t sample_step = 8;  ///< sampled: pixels of the pre-pass are so many columns and rows apart
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

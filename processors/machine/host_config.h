@@ -7,7 +7,7 @@
 
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// dynamic: a node that is free asks for the next packet. interleaved: node i of n has packets i, i + n,
 /// i + 2n, ... from the start. blocks: node i has the i-th n-th of the packets in a row.
@@ -21,4 +21,4 @@ struct HostConfig {
   std::int64_t occupancy_cycles = 0;  ///< dynamic: how long one request keeps the host from the next
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -6,7 +6,7 @@
 #include "processors/machine/combinations.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 namespace {
 
@@ -123,4 +123,4 @@ void check(const MachineConfig& config) {
   check_counting(config);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -22,7 +22,7 @@
 #include "processors/machine/second_level_config.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// Where the database is. shared: one copy in the cluster's memory behind its interconnect. replicated: a
 /// full copy in every node's own memory; only pixels cross the interconnect. distributed: one copy, frame
@@ -132,4 +132,4 @@ void check_counting(const MachineConfig& config);
 /// Throws UserError with the reason when the machine cannot be built.
 void check(const MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

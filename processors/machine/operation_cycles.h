@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// Cycles of one primitive operation. `load` and `store` are the cycles to issue one word; waiting for memory
 /// is simulated and not included here.
@@ -18,4 +18,4 @@ struct OperationCycles {
   std::int64_t store = 1;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

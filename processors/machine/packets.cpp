@@ -6,7 +6,7 @@
 
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 namespace {
 
@@ -91,4 +91,4 @@ Packet PacketList::operator[](std::uint64_t index) const {
   return {x0, y0, std::min(image_width_, x0 + config_.width), std::min(image_height_, y0 + config_.height)};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// The order in which packets are handed out. `hilbert` keeps successive packets adjacent (Hilbert 1891);
 /// `morton` interleaves the bits of column and row (Morton 1966).
@@ -52,4 +52,4 @@ class PacketList {
   std::vector<std::uint32_t> order_;  // packet number in scanline order; empty for scanline itself
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

@@ -3,7 +3,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 memory::CacheConfig second_level_cache(const MachineConfig& config) {
   memory::CacheConfig cache = config.l2.cache;
@@ -39,4 +39,4 @@ void check_second_level(const MachineConfig& config) {
                                       [&] { return memory::shape_of(second_level_cache(config)); });
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

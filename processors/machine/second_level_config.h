@@ -7,7 +7,7 @@
 
 #include "memory/cache_config.h"
 
-namespace marti::processors {
+namespace marti::processors::machine {
 
 /// private_caches: each node has one behind its first-level cache or caches. shared: each cluster has one on
 /// the memory's side of the interconnect.
@@ -21,4 +21,4 @@ struct SecondLevelConfig {
   std::int64_t hit_cycles = 4;  ///< private: of the node's clock; shared: of the banks' clock
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::machine

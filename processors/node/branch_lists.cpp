@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 std::span<const std::uint32_t> BranchLists::of(std::uint32_t branch) {
   const auto [at, is_new] = lists_.try_emplace(branch);
@@ -29,4 +29,4 @@ std::span<const std::uint32_t> BranchLists::of(std::uint32_t branch) {
   return list;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -8,7 +8,7 @@
 
 #include "accel/topology.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// Each list is built when it is first asked for, and kept. An object belongs to one thread.
 class BranchLists {
@@ -24,4 +24,4 @@ class BranchLists {
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> lists_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -7,15 +7,16 @@
 #include "processors/node/tree_copies.h"
 #include "processors/walk/replay_input.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// Levels and copies; the caller adds start-up time and the nodes' counts. `input.tree` must be set.
-[[nodiscard]] BuildResult report_build(const ReplayInput& input, const TreeCopies& copies);
+[[nodiscard]] BuildResult report_build(const walk::ReplayInput& input, const TreeCopies& copies);
 
 /// Adds the compute cycles of `counts` to the node's time for building.
-void add_building_time(const BuildTicks& ticks, const BuildCounts& counts, TimeDivision& time);
+void add_building_time(const cost::BuildTicks& ticks, const BuildCounts& counts, cost::TimeDivision& time);
 
 /// Throws InternalError unless the counts of the nodes agree with the trees that exist.
-void check_build(const WorkLog& log, const MachineConfig& config, const BuildResult& result);
+void check_build(const program::WorkLog& log, const machine::MachineConfig& config,
+                 const BuildResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -9,7 +9,7 @@
 #include "sim/statistics.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// The work of one processor node on the tree, before the frame and during it.
 struct BuildCounts {
@@ -97,7 +97,7 @@ struct BuildLevel {
 static_assert(sim::declares_every_member<BuildLevel>());
 
 struct BuildResult {
-  Sharing sharing = Sharing::given;
+  machine::Sharing sharing = machine::Sharing::given;
   sim::Ticks start_up = 0;         ///< when the initial trees are built and the host starts; within the frame
   sim::Ticks start_up_wait = 0;    ///< sum over all nodes of their waits for it; part of their dispatch_wait
   std::int64_t databases = 0;      ///< copies of the initial tree
@@ -114,4 +114,4 @@ struct BuildResult {
   [[nodiscard]] std::int64_t wasted_splits() const;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -13,7 +13,7 @@
 #include "processors/node/dynamic_walker.h"
 #include "processors/node/packet_nodes.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// `Base` is PacketNodes, or ContextCore, with `Derived` and DynamicCursor. `Derived` has, beside what `Base`
 /// asks for: ask_first(node, time), by which the node asks for its first packets; note_stop(node, stop), told
@@ -62,17 +62,18 @@ class BuildingNodes : public Base {
 
   void finish() override {
     for (std::size_t node = 0; node < statistics_.size(); ++node) {
-      NodeStatistics& statistics = statistics_[node];
-      add_counted_time(walker_.ticks(), statistics.steps, statistics.references.all_hits(), statistics.time);
+      cost::NodeStatistics& statistics = statistics_[node];
+      cost::add_counted_time(walker_.ticks(), statistics.steps, statistics.references.all_hits(),
+                             statistics.time);
       add_building_time(walker_.times(), built_[node], statistics.time);
-      statistics.time[static_cast<std::size_t>(Activity::idle)] = end_ - statistics.finish;
+      statistics.time[static_cast<std::size_t>(cost::Activity::idle)] = end_ - statistics.finish;
     }
     Base::watch_idle();
   }
 
-  SecondLevelResult second_level() const override { return walker_.second_level().result(); }
+  walk::SecondLevelResult second_level() const override { return walker_.second_level().result(); }
 
-  CacheCountResult cache_counts() const override { return walker_.counts(); }
+  walk::CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   BuildResult build_result() const override {
     BuildResult result = report_build(input_, walker_.copies());
@@ -83,7 +84,7 @@ class BuildingNodes : public Base {
   }
 
  protected:
-  BuildingNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
+  BuildingNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
       : Base(input, engine, host),
         walker_(input, std::move(caches)),
         built_(input.config.all_nodes()),
@@ -97,7 +98,7 @@ class BuildingNodes : public Base {
 
   // The first node of each cluster builds the database's tree; with a replicated database every node does.
   bool builds_before(std::uint32_t node) const {
-    return input_.config.placement == Placement::replicated || port_of(node) == 0;
+    return input_.config.placement == machine::Placement::replicated || port_of(node) == 0;
   }
 
   // A builder has nothing left to split. The frame begins when all builders are ready and their writes done.
@@ -125,10 +126,10 @@ class BuildingNodes : public Base {
     }
     for (const std::uint32_t node : order_) {
       const sim::Ticks wait = start_up_ - cursors_[node].time;
-      spend(node, Activity::dispatch_wait, wait);
+      spend(node, cost::Activity::dispatch_wait, wait);
       start_up_wait_ = sim::add_ticks(start_up_wait_, wait);
       const sim::Ticks from = std::exchange(cursors_[node].time, start_up_);
-      watch(node, NodeState::dispatch_wait, from, false);
+      watch(node, walk::NodeState::dispatch_wait, from, false);
       derived().ask_first(node, start_up_);
     }
   }
@@ -178,7 +179,7 @@ class BuildingNodes : public Base {
     const bool for_frame = for_pixel(cursor);
     const sim::Ticks from = cursor.time;
     const DynamicStop stop = advance(node);
-    watch(node, NodeState::working, from, for_frame);
+    watch(node, walk::NodeState::working, from, for_frame);
     derived().note_stop(node, stop);
     switch (stop) {
       case DynamicStop::due:
@@ -208,7 +209,7 @@ class BuildingNodes : public Base {
     if (walker_.miss(node, cursor, statistics_[node])) {
       return true;
     }
-    watch(node, NodeState::working, from, for_pixel(cursor));
+    watch(node, walk::NodeState::working, from, for_pixel(cursor));
     run(node);
     return false;
   }
@@ -285,4 +286,4 @@ class BuildingNodes : public Base {
   sim::Ticks start_up_wait_ = 0;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

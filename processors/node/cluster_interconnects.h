@@ -10,7 +10,7 @@
 #include "memory/interconnect.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// A bus that serves first come, first served is the common case, so its code is joined with that of the
 /// nodes: `Client` is the class of the cluster's client, so that the compiler knows what it is told.
@@ -61,4 +61,4 @@ class ClusterInterconnects {
   std::vector<memory::Bus*> buses_;  // the interconnects, if they are of this class; else empty
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

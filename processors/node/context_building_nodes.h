@@ -8,7 +8,7 @@
 #include "processors/node/context_core.h"
 #include "processors/walk/guarded_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 template <class Caches>
 class ContextBuildingNodes;
@@ -16,7 +16,7 @@ class ContextBuildingNodes;
 template <class Caches>
 using ContextBuildingBase =
     BuildingNodes<ContextBuildingNodes<Caches>, ContextCore<ContextBuildingNodes<Caches>, DynamicCursor>,
-                  GuardedCaches<Caches>>;
+                  walk::GuardedCaches<Caches>>;
 
 /// `Caches` is one of node_caches.h, or CountedCaches. The members are described in node_array.h.
 template <class Caches>
@@ -41,8 +41,8 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
   using typename Scheduler::Wait;
 
  public:
-  ContextBuildingNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
-      : Base(input, engine, host, GuardedCaches<Caches>(input, std::move(caches))),
+  ContextBuildingNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
+      : Base(input, engine, host, walk::GuardedCaches<Caches>(input, std::move(caches))),
         stops_(input.config.all_nodes()) {}
 
   std::size_t bytes_per_node() const override { return Base::context_bytes() + Base::building_bytes(); }
@@ -59,7 +59,7 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
     core.waiting = true;
     core.fresh = true;
     core.since = time;
-    core.wake = never;
+    core.wake = walk::never;
     Base::ask_for_packets(node, time);
   }
 
@@ -86,7 +86,7 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
     lock_waits_[worker].arrived = done;
     context.wait = Wait::lock;
     context.locked = done;
-    return Base::released(worker) < 0 ? never : Base::released(worker);
+    return Base::released(worker) < 0 ? walk::never : Base::released(worker);
   }
 
   // It has become known when the branch can be seen that the worker waits for.
@@ -118,7 +118,7 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
       case DynamicStop::line: {
         const auto cache = walker_.caches().view(node);
         const std::uint32_t slot = cache.awaits(cursor.kind, line_at(cursor.at), engine_.now());
-        if (slot == LinesUnderWay::none) {
+        if (slot == walk::LinesUnderWay::none) {
           cursor.due = true;
           Base::run(node);
         } else {
@@ -148,13 +148,13 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
     Context& context = context_of(node, cores_[node].active);
     context.wait = Wait::lock;
     context.locked = engine_.now();
-    context.ready = never;
+    context.ready = walk::never;
     stall(node);
   }
   // Lets the contexts go on that wait for a branch of the node's own tree which is split now. Called when the
   // active context has stopped, before another one is taken up.
   void release_others(std::uint32_t node) {
-    if (input_.config.build.sharing != Sharing::private_trees) {
+    if (input_.config.build.sharing != machine::Sharing::private_trees) {
       return;
     }
     for (std::uint32_t number = 0; number < input_.config.contexts; ++number) {
@@ -186,4 +186,4 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
   sim::LargeVector<DynamicStop> stops_;  // why the active context of each node stopped last
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -19,7 +19,7 @@
 #include "processors/walk/second_level.h"
 #include "processors/walk/waiting_time.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// `Derived` has, beside what PacketNodes asks for: walker_, whose caches are guarded; step(node), read(node)
 /// and write(node), called when the time has come of what the active context has stopped for;
@@ -58,7 +58,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     }
   }
 
-  ContextResult context_result() const override {
+  walk::ContextResult context_result() const override {
     return {static_cast<const Derived&>(*this).walker_.caches().counts()};
   }
 
@@ -87,17 +87,17 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   enum class Wait : std::uint8_t { none, miss, line, lock, host, done };
 
   struct Context {
-    Cursor cursor;             // of this context, while the node works on another
-    sim::Ticks ready = never;  // when it is ready to continue; never while that is not known
-    sim::Ticks locked = 0;     // lock: from when on it only waits for the branch
-    std::uint64_t packet = 0;  // its number at the host
-    std::uint32_t slot = 0;    // the transaction that it waits for
+    Cursor cursor;                   // of this context, while the node works on another
+    sim::Ticks ready = walk::never;  // when it is ready to continue; never while that is not known
+    sim::Ticks locked = 0;           // lock: from when on it only waits for the branch
+    std::uint64_t packet = 0;        // its number at the host
+    std::uint32_t slot = 0;          // the transaction that it waits for
     Wait wait = Wait::none;
   };
 
   struct Core {
-    sim::Ticks since = 0;     // when it began to wait
-    sim::Ticks wake = never;  // when the wait is known to end
+    sim::Ticks since = 0;           // when it began to wait
+    sim::Ticks wake = walk::never;  // when the wait is known to end
     std::uint32_t active = 0;
     std::uint32_t live = 0;  // contexts that may still get a packet
     bool waiting = true;     // no context is ready
@@ -105,7 +105,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     bool due = false;        // the walk has stopped for what is decided at its time, not at a miss
   };
 
-  ContextCore(const ReplayInput& input, sim::Engine& engine, Host& host)
+  ContextCore(const walk::ReplayInput& input, sim::Engine& engine, Host& host)
       : Base(input, engine, host),
         switch_(input.config.clock.cycles(input.config.switch_cycles)),
         cores_(input.config.all_nodes()),
@@ -199,7 +199,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   // The active context waits for a line that transaction `slot` brings.
   void wait_for_line(std::uint32_t node, std::uint32_t slot) {
     Context& context = context_of(node, cores_[node].active);
-    ContextCounts& counts = counts_of(node);
+    walk::ContextCounts& counts = counts_of(node);
     ++(slot < input_.config.contexts ? counts.joined : counts.late);
     context.wait = Wait::line;
     context.slot = slot;
@@ -212,7 +212,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     Context& context = context_of(node, cores_[node].active);
     context.wait = Wait::miss;
     context.slot = cores_[node].active;
-    context.ready = never;
+    context.ready = walk::never;
   }
 
   // The active context begins to read the line that it has missed, and waits for it. With it the next line
@@ -256,7 +256,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
       if (input_.causes != nullptr) {
         input_.causes->prefetched(node, slot, engine_.now(), done);
       }
-      arrived(node, slot, cache_access_until(done));
+      arrived(node, slot, walk::cache_access_until(done));
     } else {
       const std::uint32_t bytes = input_.config.cache.cache.line;
       issue(node, slot, memory::Address{line} * bytes, bytes);
@@ -265,7 +265,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   }
 
   void issue(std::uint32_t node, std::uint32_t slot, memory::Address address, std::uint32_t bytes) {
-    service_of(node, slot).done = never;
+    service_of(node, slot).done = walk::never;
     Base::read_memory(node, {port_of(node) + slot, address, bytes});
   }
 
@@ -277,7 +277,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     for (std::uint32_t number = 0; number < input_.config.contexts; ++number) {
       Context& context = context_of(node, number);
       if ((context.wait == Wait::miss || context.wait == Wait::line) && context.slot == slot &&
-          context.ready == never) {
+          context.ready == walk::never) {
         context.ready = derived().ready_after(node, number, service.done);
         if (cores_[node].waiting) {
           expect(node, context.ready);
@@ -319,7 +319,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     }
     core.waiting = true;
     core.since = now;
-    core.wake = never;
+    core.wake = walk::never;
     for (std::uint32_t number = 0; number < input_.config.contexts; ++number) {
       expect(node, context_of(node, number).ready);
     }
@@ -338,8 +338,8 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
       input_.causes->wait_ended(node, next, context.wait == Wait::host ? next : context.slot);
     }
     if (context.wait == Wait::host) {
-      spend(node, Activity::dispatch_wait, now - core.since);
-      tell(node, NodeState::dispatch_wait, core.since, now, {});
+      spend(node, cost::Activity::dispatch_wait, now - core.since);
+      tell(node, walk::NodeState::dispatch_wait, core.since, now, {});
     } else {
       end_wait(node, next, core.since, now);
     }
@@ -351,29 +351,30 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   void end_wait(std::uint32_t node, std::uint32_t number, sim::Ticks since, sim::Ticks now) {
     const Context& context = context_of(node, number);
     const Cursor& cursor = cursor_of(node, number);
-    const PixelPlace place = Derived::for_pixel(cursor) ? PixelPlace{cursor.x, cursor.y} : PixelPlace{};
+    const walk::PixelPlace place =
+        Derived::for_pixel(cursor) ? walk::PixelPlace{cursor.x, cursor.y} : walk::PixelPlace{};
     resume_packet(node, number, cursor);
     const sim::Ticks locked = context.wait == Wait::lock ? std::max(since, context.locked) : now;
     if (locked != since) {
       end_read(node, service_of(node, context.slot), cursor, since, locked, place);
     }
-    spend(node, Activity::lock_wait, now - locked);
-    tell(node, NodeState::lock_wait, locked, now, place);
+    spend(node, cost::Activity::lock_wait, now - locked);
+    tell(node, walk::NodeState::lock_wait, locked, now, place);
   }
 
   // The node has waited from `since` to `now` for what this read brings.
   void end_read(std::uint32_t node, const memory::Service& service, const Cursor& cursor, sim::Ticks since,
-                sim::Ticks now, PixelPlace place) {
-    if (is_cache_access(service)) {
-      spend(node, Activity::cache_access, now - since);
-      tell(node, NodeState::working, since, now, place);
+                sim::Ticks now, walk::PixelPlace place) {
+    if (walk::is_cache_access(service)) {
+      spend(node, cost::Activity::cache_access, now - since);
+      tell(node, walk::NodeState::working, since, now, place);
       return;
     }
-    const memory::Service waited = last_part(service, now - since);
+    const memory::Service waited = walk::last_part(service, now - since);
     spend(node, waited);
     derived().walker_.note_wait(cursor, waited);
     if (input_.observer != nullptr) {
-      spent_reading(*input_.observer, node, waited, since, place);
+      walk::spent_reading(*input_.observer, node, waited, since, place);
     }
   }
 
@@ -410,12 +411,12 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     cursor.time = now;
     if (other && !core.fresh) {
       cursor.time = sim::add_ticks(now, switch_);
-      spend(node, Activity::switching, switch_);
+      spend(node, cost::Activity::switching, switch_);
       ++counts_of(node).switches;
-      watch(node, NodeState::working, now);
+      watch(node, walk::NodeState::working, now);
     }
     core.fresh = false;
-    context.ready = never;
+    context.ready = walk::never;
     const Wait waited = std::exchange(context.wait, Wait::none);
     if (waited == Wait::miss) {
       derived().pass(cursor);
@@ -431,9 +432,10 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
       input_.observer->resumed_packet(node, context_of(node, number).packet);
     }
   }
-  void tell(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace place) {
+  void tell(std::uint32_t node, walk::NodeState state, sim::Ticks from, sim::Ticks to,
+            walk::PixelPlace place) {
     if (input_.observer != nullptr && from != to) {
-      if (state == NodeState::working) {
+      if (state == walk::NodeState::working) {
         Base::watch_work(node, false);
       }
       input_.observer->spent(node, state, from, to, place);
@@ -442,7 +444,9 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
 
  private:
   Derived& derived() { return static_cast<Derived&>(*this); }
-  ContextCounts& counts_of(std::uint32_t node) { return derived().walker_.caches().view(node).counts(); }
+  walk::ContextCounts& counts_of(std::uint32_t node) {
+    return derived().walker_.caches().view(node).counts();
+  }
 
   sim::Ticks switch_;
 
@@ -453,4 +457,4 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   sim::LargeVector<memory::Service> services_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -8,13 +8,13 @@
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/node_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// Holds the caches: a class of node_caches.h, or CountedCaches; either may be guarded.
 template <class Caches>
 class CountedLookUps {
  public:
-  static constexpr bool counted = are_counted<Caches>;
+  static constexpr bool counted = walk::are_counted<Caches>;
   using View = typename Caches::View;
 
   explicit CountedLookUps(Caches caches) : caches_(std::move(caches)) {}
@@ -62,7 +62,7 @@ class CountedLookUps {
     }
   }
   /// The counts beyond hits and misses; empty where nothing is counted.
-  [[nodiscard]] CacheCountResult counts() const {
+  [[nodiscard]] walk::CacheCountResult counts() const {
     if constexpr (counted) {
       return caches_.counting().result();
     } else {
@@ -71,8 +71,8 @@ class CountedLookUps {
   }
 
  private:
-  static Origin origin_of(const DynamicCursor& cursor) {
-    Origin origin = cursor.origin;
+  static walk::Origin origin_of(const DynamicCursor& cursor) {
+    walk::Origin origin = cursor.origin;
     origin.splitting = cursor.before || is_for_split(cursor.todo);
     return origin;
   }
@@ -80,4 +80,4 @@ class CountedLookUps {
   Caches caches_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -7,10 +7,11 @@
 #include "processors/node/node_factory.h"
 #include "processors/walk/counted_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
-std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
-  return with_counted_caches(input, [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
+std::unique_ptr<NodeArray> make_counted_nodes(const walk::ReplayInput& input, sim::Engine& engine,
+                                              Host& host) {
+  return walk::with_counted_caches(input, [&]<class Caches>(Caches caches) -> std::unique_ptr<NodeArray> {
     const bool contexts = has_context_nodes(input);
     if (input.tree != nullptr && contexts) {
       return std::make_unique<ContextBuildingNodes<Caches>>(input, engine, host, std::move(caches));
@@ -25,4 +26,4 @@ std::unique_ptr<NodeArray> make_counted_nodes(const ReplayInput& input, sim::Eng
   });
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -8,7 +8,7 @@
 #include "processors/walk/attribution.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// What the node does after it has read or written the bytes from DynamicCursor::at to `end`.
 enum class Todo : std::uint8_t {
@@ -53,10 +53,10 @@ struct DynamicCursor {
   std::uint32_t x = 0;
   std::uint32_t y = 0;
   std::uint32_t writes = 0;  ///< where the next posted write goes in the write buffer
-  Packet packet;
+  machine::Packet packet;
   memory::RecordKind kind = memory::RecordKind::node;
   Todo todo = Todo::step;
-  Origin origin;  ///< of the present reference, but for `splitting`; kept only where it is counted
+  walk::Origin origin;  ///< of the present reference, but for `splitting`; kept only where it is counted
   Lock lock = Lock::won;
   bool writing = false;  ///< the bytes are written, not read
   bool due = false;      ///< the simulation has reached the reference that comes next
@@ -73,4 +73,4 @@ struct DynamicCursor {
 /// another context of the node splits the branch that the walk has come to, in the node's own tree.
 enum class DynamicStop : std::uint8_t { due, miss, lock, write, ready, line, children, other };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -7,7 +7,7 @@
 
 #include "processors/node/building_nodes.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 template <class Caches>
 class DynamicNodes;
@@ -35,7 +35,7 @@ class DynamicNodes final : public DynamicNodesBase<Caches> {
   using Base::watch_read;
 
  public:
-  DynamicNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
+  DynamicNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
       : Base(input, engine, host, std::move(caches)) {}
 
   void handle(const sim::Event& event) override {
@@ -108,10 +108,10 @@ class DynamicNodes final : public DynamicNodesBase<Caches> {
     const sim::Ticks arrived = lock_waits_[node].arrived;
     DynamicCursor& cursor = cursors_[node];
     cursor.time = Base::released(node);
-    spend(node, Activity::lock_wait, cursor.time - arrived);
-    watch(node, NodeState::lock_wait, arrived);
+    spend(node, cost::Activity::lock_wait, cursor.time - arrived);
+    watch(node, walk::NodeState::lock_wait, arrived);
     post(EventClass::step, cursor.time, node);
   }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

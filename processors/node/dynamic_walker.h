@@ -31,12 +31,12 @@
 #include "processors/walk/second_level.h"
 #include "processors/walk/visit_plan.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 template <class Caches>
 class DynamicWalker {
  public:
-  DynamicWalker(const ReplayInput& input, Caches caches)
+  DynamicWalker(const walk::ReplayInput& input, Caches caches)
       : input_(input),
         plan_(*input.tree),
         layout_(input.layout),
@@ -47,27 +47,27 @@ class DynamicWalker {
         copies_(plan_, topology_, layout_, input.config, unit_shift_),
         addresses_(plan_, topology_, layout_, copies_),
         lists_(topology_),
-        ticks_(step_ticks(input.config, input.log)),
-        build_ticks_(build_ticks(input.config)),
+        ticks_(cost::step_ticks(input.config, input.log)),
+        build_ticks_(cost::build_ticks(input.config)),
         local_(input.config.local),
         second_level_(input.config),
-        local_base_(input.config.placement == Placement::replicated ? 0
-                    : private_()                                    ? plan_.lower_base()
-                                                                    : ~memory::Address{0}) {
+        local_base_(input.config.placement == machine::Placement::replicated ? 0
+                    : private_()                                             ? plan_.lower_base()
+                                                                             : ~memory::Address{0}) {
     if (plans && !input.step_by_step && input.causes == nullptr) {
-      visits_ = plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
-      planned_limit_ = visits_.empty() ? 0 : 2U << operand_bits;
+      visits_ = walk::plan_initial_visits(plan_, input.log, layout_, unit_shift_, ticks_);
+      planned_limit_ = visits_.empty() ? 0 : 2U << program::operand_bits;
     }
   }
 
   DynamicWalker(const DynamicWalker&) = delete;  // its members refer to each other
   DynamicWalker& operator=(const DynamicWalker&) = delete;
 
-  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
-  [[nodiscard]] const BuildTicks& times() const { return build_ticks_; }
+  [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const cost::BuildTicks& times() const { return build_ticks_; }
   [[nodiscard]] TreeCopies& copies() { return copies_; }
   [[nodiscard]] const TreeCopies& copies() const { return copies_; }
-  [[nodiscard]] const PrivateSecondLevel& second_level() const { return second_level_; }
+  [[nodiscard]] const walk::PrivateSecondLevel& second_level() const { return second_level_; }
   /// See PrivateSecondLevel::hit.
   std::optional<sim::Ticks> second_level_hit(std::uint32_t node, std::uint32_t line) {
     return second_level_.hit(node, line);
@@ -75,7 +75,7 @@ class DynamicWalker {
   [[nodiscard]] Caches& caches() { return caches_.caches(); }
   [[nodiscard]] const Caches& caches() const { return caches_.caches(); }
   /// The counts beyond hits and misses; empty where nothing is counted.
-  [[nodiscard]] CacheCountResult counts() const { return caches_.counts(); }
+  [[nodiscard]] walk::CacheCountResult counts() const { return caches_.counts(); }
   /// Counts what the wait for a transaction was for, where that is counted.
   void note_wait(const DynamicCursor& cursor, const memory::Service& service) const {
     caches_.note_wait(cursor, service);
@@ -87,7 +87,7 @@ class DynamicWalker {
 
   /// Continues `node` from its cursor. Without RunAhead it stops before every reference.
   template <bool RunAhead>
-  DynamicStop advance(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics,
+  DynamicStop advance(std::uint32_t node, DynamicCursor& cursor, cost::NodeStatistics& statistics,
                       BuildCounts& built) {
     const std::uint32_t copy = copies_.copy_of(node);
     const LineStates lines = copies_.lines(copy);
@@ -144,7 +144,7 @@ class DynamicWalker {
           if (input_.log.mailboxes) {
             ++statistics.steps.lookups;
             spend(cursor, ticks_.lookup, 1);
-            if (cursor.tested != nullptr && !tested_in_mask(cursor.tested, cursor.entry_number++)) {
+            if (cursor.tested != nullptr && !program::tested_in_mask(cursor.tested, cursor.entry_number++)) {
               ++cursor.entry;
               break;
             }
@@ -172,7 +172,7 @@ class DynamicWalker {
           break;
         case Todo::voxel:
           cursor.todo = Todo::step;
-          if (const TreePlan::Place& place = plan_.place(cursor.node);
+          if (const walk::TreePlan::Place& place = plan_.place(cursor.node);
               addresses_.has_slot(place) && !copies_.built(copy, place.lazy)) {
             read(cursor, memory::RecordKind::node, addresses_.initial_record(cursor.node), node_bytes());
           }
@@ -245,7 +245,7 @@ class DynamicWalker {
   template <class Visit>
   bool each_child_line(std::uint32_t copy, std::uint32_t branch, const Visit& visit) const {
     const accel::TopologyNode& node = topology_.nodes[branch];
-    return each_line_of(
+    return walk::each_line_of(
         node.count, node_bytes(), unit_shift_,
         [&](std::uint32_t number) -> std::optional<memory::Address> {
           const memory::Address address = addresses_.record(copy, node.first + number);
@@ -261,7 +261,7 @@ class DynamicWalker {
   }
 
   /// Brings in the line of a miss whose time has come. False when the second level has served the miss.
-  bool miss(std::uint32_t node, DynamicCursor& cursor, NodeStatistics& statistics) {
+  bool miss(std::uint32_t node, DynamicCursor& cursor, cost::NodeStatistics& statistics) {
     const std::uint32_t copy = copies_.copy_of(node);
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
     (void)LookUps::access(caches().view(node), cursor, line, is_own(cursor));
@@ -283,14 +283,15 @@ class DynamicWalker {
   /// Whether the bytes just written were the last of a lazy branch's own record.
   [[nodiscard]] bool publishes(const DynamicCursor& cursor) const {
     return cursor.todo == Todo::done && cursor.at >= cursor.end &&
-           plan_.place(cursor.node).lazy != TreePlan::none;
+           plan_.place(cursor.node).lazy != walk::TreePlan::none;
   }
 
  private:
   using View = typename Caches::View;
   using LookUps = CountedLookUps<Caches>;
   static constexpr bool guarded = requires { Caches::guarded; };
-  static constexpr bool plans = Caches::present && !are_counted<Caches> && !guarded;  // see take_planned()
+  static constexpr bool plans =
+      Caches::present && !walk::are_counted<Caches> && !guarded;  // see take_planned()
 
   // Whether reading the branch prefetches something, or may at that time: a line that is not settled may be
   // taken out of the cache until then.
@@ -311,7 +312,9 @@ class DynamicWalker {
   [[nodiscard]] bool is_own(const DynamicCursor& cursor) const {
     return private_() && cursor.at >= plan_.lower_base();
   }
-  [[nodiscard]] bool private_() const { return input_.config.build.sharing == Sharing::private_trees; }
+  [[nodiscard]] bool private_() const {
+    return input_.config.build.sharing == machine::Sharing::private_trees;
+  }
   [[nodiscard]] std::uint32_t node_bytes() const { return layout_.record_bytes(memory::RecordKind::node); }
   [[nodiscard]] std::uint32_t part(const DynamicCursor& cursor) const {
     const memory::Address next = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
@@ -338,27 +341,28 @@ class DynamicWalker {
     read(cursor, memory::RecordKind::node, addresses_.record(copy, tree_node), node_bytes());
   }
   void read_one(DynamicCursor& cursor, memory::RecordKind kind, std::uint64_t index) const {
-    if (!of_tree(kind)) {
+    if (!walk::of_tree(kind)) {
       LookUps::note_level(cursor, 0);
     }
     read(cursor, kind, layout_.address(kind, index), layout_.record_bytes(kind, index));
   }
 
   // Counts a test and spends its compute time.
-  void begin_test(DynamicCursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
-    cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
+  void begin_test(DynamicCursor& cursor, cost::StepCounts& steps, std::uint32_t primitive) const {
+    cursor.time = sim::add_ticks(cursor.time, cost::count_test(ticks_, input_.log.kind_of(primitive), steps));
   }
 
   // Takes visits to the initial tree whose lines are all settled and in the cache. The first visit that is
   // not of this kind is left to be taken record by record, from its beginning: its lines looked up here are
   // then used a second time in the same order, which changes nothing.
-  void take_planned(const LineStates& lines, View cache, DynamicCursor& cursor, NodeStatistics& statistics) {
-    VisitCounts counts;
+  void take_planned(const LineStates& lines, View cache, DynamicCursor& cursor,
+                    cost::NodeStatistics& statistics) {
+    walk::VisitCounts counts;
     std::uint32_t visits = 0;
     sim::Ticks time = cursor.time;
     const std::uint32_t* word = cursor.word;
     for (; word != cursor.word_end && *word < planned_limit_; ++word) {
-      const Visit& visit = visits_.visits[operand_of(*word)];
+      const walk::Visit& visit = visits_.visits[program::operand_of(*word)];
       const std::uint32_t* line = visits_.lines.data() + visit.begin;
       const std::uint32_t* const end = line + visit.lines;
       while (line != end && lines.settled(*line) && look_up(cache, line)) {
@@ -369,20 +373,20 @@ class DynamicWalker {
       }
       time = sim::add_ticks(time, visit.time);
       counts += visit.counts;
-      if (++visits == most_summed_visits) [[unlikely]] {
-        add_visits(std::exchange(counts, {}), visits, input_.log.mailboxes, statistics);
+      if (++visits == walk::most_summed_visits) [[unlikely]] {
+        walk::add_visits(std::exchange(counts, {}), visits, input_.log.mailboxes, statistics);
         visits = 0;
       }
     }
     cursor.word = word;
     cursor.time = time;
-    add_visits(counts, visits, input_.log.mailboxes, statistics);
+    walk::add_visits(counts, visits, input_.log.mailboxes, statistics);
   }
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
     if constexpr (Caches::by_kind) {
       const auto at = static_cast<std::size_t>(line - visits_.lines.data());
-      return cache.touch(kind_of_label(visits_.labels[at]), *line);
+      return cache.touch(walk::kind_of_label(visits_.labels[at]), *line);
     } else {
       return cache.touch(memory::RecordKind::node, *line);  // such caches ignore the kind
     }
@@ -398,7 +402,7 @@ class DynamicWalker {
   // Reads the next part. False when the node has to stop.
   template <bool RunAhead>
   bool refer(std::uint32_t node, std::uint32_t copy, const LineStates& lines, View cache,
-             DynamicCursor& cursor, NodeStatistics& statistics, BuildCounts& built, DynamicStop& stop) {
+             DynamicCursor& cursor, cost::NodeStatistics& statistics, BuildCounts& built, DynamicStop& stop) {
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
     if ((!RunAhead || (Caches::present && !lines.settled(line))) && !cursor.due) {
       stop = DynamicStop::due;
@@ -406,7 +410,7 @@ class DynamicWalker {
     }
     const bool local = cursor.at >= local_base_;
     if constexpr (guarded) {
-      if (!local && cache.awaits(cursor.kind, line, cursor.time) != LinesUnderWay::none) {
+      if (!local && cache.awaits(cursor.kind, line, cursor.time) != walk::LinesUnderWay::none) {
         stop = DynamicStop::line;
         return false;
       }
@@ -433,14 +437,14 @@ class DynamicWalker {
     return true;
   }
 
-  void use_local(DynamicCursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) const {
+  void use_local(DynamicCursor& cursor, cost::NodeStatistics& statistics, std::uint32_t bytes) const {
     const memory::Service service = local_.read(bytes, cursor.time);
-    add_service(statistics.time, service);
+    cost::add_service(statistics.time, service);
     caches_.note_wait(cursor, service);
     cursor.time = service.done;
   }
 
-  void write_local(std::uint32_t copy, DynamicCursor& cursor, NodeStatistics& statistics,
+  void write_local(std::uint32_t copy, DynamicCursor& cursor, cost::NodeStatistics& statistics,
                    BuildCounts& built) {
     built.written_bytes += part(cursor);
     use_local(cursor, statistics, part(cursor));
@@ -503,8 +507,8 @@ class DynamicWalker {
     }
   }
 
-  void take_leaf(DynamicCursor& cursor, std::uint32_t copy, NodeStatistics& statistics, std::uint32_t leaf,
-                 std::uint32_t tests, const std::uint32_t* tested = nullptr) {
+  void take_leaf(DynamicCursor& cursor, std::uint32_t copy, cost::NodeStatistics& statistics,
+                 std::uint32_t leaf, std::uint32_t tests, const std::uint32_t* tested = nullptr) {
     ++statistics.steps.leaves;
     statistics.steps.lists += tests != 0 ? 1 : 0;
     spend(cursor, ticks_.leaf, 1);
@@ -517,57 +521,58 @@ class DynamicWalker {
   }
 
   // Takes any step: spends its compute cycles and prepares the first of its references.
-  void take_step(DynamicCursor& cursor, std::uint32_t copy, NodeStatistics& statistics, std::uint32_t word) {
-    const std::uint32_t operand = operand_of(word);
-    StepCounts& steps = statistics.steps;
-    switch (step_of(word)) {
-      case Step::branch:
+  void take_step(DynamicCursor& cursor, std::uint32_t copy, cost::NodeStatistics& statistics,
+                 std::uint32_t word) {
+    const std::uint32_t operand = program::operand_of(word);
+    cost::StepCounts& steps = statistics.steps;
+    switch (program::step_of(word)) {
+      case program::Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
         if constexpr (guarded) {
           cursor.children = operand;
         }
         read_record(cursor, copy, operand,
-                    plan_.place(operand).lazy == TreePlan::none ? Todo::step : Todo::branch);
+                    plan_.place(operand).lazy == walk::TreePlan::none ? Todo::step : Todo::branch);
         break;
-      case Step::leaf:
+      case program::Step::leaf:
         take_leaf(cursor, copy, statistics, operand, topology_.nodes[operand].count);
         break;
-      case Step::partial_leaf:
+      case program::Step::partial_leaf:
         take_leaf(cursor, copy, statistics, operand, *cursor.word++);
         break;
-      case Step::mailed_leaf: {
+      case program::Step::mailed_leaf: {
         const std::uint32_t entries = *cursor.word++;
         const std::uint32_t* const tested = cursor.word;
-        cursor.word += mask_words(entries);
+        cursor.word += program::mask_words(entries);
         take_leaf(cursor, copy, statistics, operand, entries, tested);
         break;
       }
-      case Step::ray:
+      case program::Step::ray:
         LookUps::note_ray(cursor, operand);
-        ++(steps.*ray_counters[ray_number_of(operand)]);
-        spend(cursor, ticks_.ray[ray_number_of(operand)], 1);
+        ++(steps.*cost::ray_counters[program::ray_number_of(operand)]);
+        spend(cursor, ticks_.ray[program::ray_number_of(operand)], 1);
         break;
-      case Step::shade:
+      case program::Step::shade:
         ++steps.shades;
         spend(cursor, ticks_.shade, 1);
         read_one(cursor, memory::RecordKind::material, operand);
         break;
-      case Step::cut:
+      case program::Step::cut:
         ++steps.cuts;
         spend(cursor, ticks_.cut, 1);
         read_record(cursor, copy, operand, Todo::voxel);
         break;
-      case Step::pass:
+      case program::Step::pass:
         ++steps.passes;
         spend(cursor, ticks_.pass, 1);
         read_one(cursor, memory::RecordKind::material, operand);
         break;
-      case Step::light:
+      case program::Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);
         break;
-      case Step::texel:
+      case program::Step::texel:
         ++steps.texels;
         spend(cursor, ticks_.texel, 1);
         read_one(cursor, memory::RecordKind::texel, input_.log.texture_begin[operand] + *cursor.word++);
@@ -575,8 +580,8 @@ class DynamicWalker {
     }
   }
 
-  ReplayInput input_;
-  const TreePlan& plan_;
+  walk::ReplayInput input_;
+  const walk::TreePlan& plan_;
   const memory::Layout& layout_;
   const accel::Topology& topology_;
   LookUps caches_;
@@ -584,14 +589,14 @@ class DynamicWalker {
   unsigned unit_shift_;
   TreeCopies copies_;
   TreeAddresses addresses_;
-  VisitPlan visits_;  // of the initial tree
+  walk::VisitPlan visits_;  // of the initial tree
   std::uint32_t planned_limit_ = 0;
   BranchLists lists_;
-  StepTicks ticks_;
-  BuildTicks build_ticks_;
-  LocalMemory local_;
-  PrivateSecondLevel second_level_;
+  cost::StepTicks ticks_;
+  cost::BuildTicks build_ticks_;
+  walk::LocalMemory local_;
+  walk::PrivateSecondLevel second_level_;
   memory::Address local_base_;  ///< addresses from here on are in a node's own memory
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

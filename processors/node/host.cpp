@@ -2,19 +2,20 @@
 
 #include <algorithm>
 
-namespace marti::processors {
+namespace marti::processors::node {
 
-Host::Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes, sim::WorkMeter* meter)
+Host::Host(const machine::HostConfig& config, std::uint64_t packets, std::uint32_t nodes,
+           sim::WorkMeter* meter)
     : config_(config),
       meter_(meter),
       packets_(packets),
       nodes_(nodes),
-      taken_(config.assignment == Assignment::dynamic ? 0 : nodes),
+      taken_(config.assignment == machine::Assignment::dynamic ? 0 : nodes),
       latency_(config.clock.cycles(config.latency_cycles)),
       occupancy_(config.clock.cycles(config.occupancy_cycles)) {}
 
 std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
-  if (config_.assignment == Assignment::interleaved) {
+  if (config_.assignment == machine::Assignment::interleaved) {
     const std::uint64_t packet = node + taken_[node] * nodes_;
     if (packet >= packets_) {
       return std::nullopt;
@@ -23,7 +24,7 @@ std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
     count_step(meter_);
     return Grant{packet, now};
   }
-  if (config_.assignment == Assignment::blocks) {
+  if (config_.assignment == machine::Assignment::blocks) {
     const std::uint64_t packet = packets_ * node / nodes_ + taken_[node];
     if (packet >= packets_ * (node + 1) / nodes_) {
       return std::nullopt;
@@ -43,4 +44,4 @@ std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
   return Grant{handed_out_++, sim::add_ticks(begin, latency_)};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

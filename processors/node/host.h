@@ -12,7 +12,7 @@
 #include "sim/time.h"
 #include "sim/work_meter.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// A packet and when its node may begin it.
 struct Grant {
@@ -39,7 +39,8 @@ static_assert(sim::declares_every_member<HostStatistics>());
 class Host {
  public:
   /// Each packet that is granted is counted on `meter`, which may be null.
-  Host(const HostConfig& config, std::uint64_t packets, std::uint32_t nodes, sim::WorkMeter* meter = nullptr);
+  Host(const machine::HostConfig& config, std::uint64_t packets, std::uint32_t nodes,
+       sim::WorkMeter* meter = nullptr);
 
   /// Grants node `node`, free at `now`, its next packet; std::nullopt when none is left for it.
   std::optional<Grant> next(std::uint32_t node, sim::Ticks now);
@@ -47,7 +48,7 @@ class Host {
   [[nodiscard]] const HostStatistics& statistics() const { return statistics_; }
 
  private:
-  HostConfig config_;
+  machine::HostConfig config_;
   sim::WorkMeter* meter_;
   std::uint64_t packets_;
   std::uint64_t nodes_;
@@ -59,4 +60,4 @@ class Host {
   HostStatistics statistics_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

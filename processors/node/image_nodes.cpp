@@ -3,18 +3,18 @@
 #include "processors/node/node_factory.h"
 #include "processors/walk/log_walker.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 namespace {
 
 // Has one parameter, as make_nodes needs: not every compiler ignores a further one that has a default.
 template <class Caches>
-using LoggedNodes = ImageNodes<Caches, LogWalker<Caches>>;
+using LoggedNodes = ImageNodes<Caches, walk::LogWalker<Caches>>;
 
 }  // namespace
 
-std::unique_ptr<NodeArray> make_image_nodes(const ReplayInput& input, sim::Engine& engine, Host& host) {
+std::unique_ptr<NodeArray> make_image_nodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host) {
   return make_plain_nodes<LoggedNodes>(input, engine, host);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -13,13 +13,13 @@
 #include "processors/walk/node_caches.h"
 #include "sim/prefetch.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// `Caches` is one of node_caches.h, `Walker` is LogWalker or StrippedWalker with them. The members are
 /// described in node_array.h.
-template <class Caches, class Walker = LogWalker<Caches>>
-class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> {
-  using Base = PacketNodes<ImageNodes<Caches, Walker>, Cursor>;
+template <class Caches, class Walker = walk::LogWalker<Caches>>
+class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cursor> {
+  using Base = PacketNodes<ImageNodes<Caches, Walker>, walk::Cursor>;
   friend Base;
   using Base::cursors_;
   using Base::dispatch;
@@ -36,7 +36,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   using Base::write_pixel;
 
  public:
-  ImageNodes(const ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
+  ImageNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
       : Base(input, engine, host),
         walker_(input, std::move(caches)),
         begun_(input.sample == nullptr ? 0 : input.config.all_nodes()) {}
@@ -90,9 +90,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   }
 
   void finish() override {
-    for (NodeStatistics& node : statistics_) {
-      add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
-      node.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.finish;
+    for (cost::NodeStatistics& node : statistics_) {
+      cost::add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
+      node.time[static_cast<std::size_t>(cost::Activity::idle)] = end_ - node.finish;
     }
     Base::watch_idle();
     if (input_.own_reads) {
@@ -100,10 +100,10 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     }
   }
 
-  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
+  walk::SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
-  CacheCountResult cache_counts() const override {
-    if constexpr (are_counted<Caches>) {
+  walk::CacheCountResult cache_counts() const override {
+    if constexpr (walk::are_counted<Caches>) {
       return walker_.counts();
     } else {
       return {};
@@ -124,13 +124,13 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     }
   }
 
-  static bool for_pixel(const Cursor& /*cursor*/) { return true; }
+  static bool for_pixel(const walk::Cursor& /*cursor*/) { return true; }
 
-  void begin_packet(std::uint32_t node, Cursor& cursor) requires requires(Walker walker) {
+  void begin_packet(std::uint32_t node, walk::Cursor& cursor) requires requires(Walker walker) {
     walker.begin_packet(node, cursor);
   }
   { walker_.begin_packet(node, cursor); }
-  void begin_pixel(Cursor& cursor) const { walker_.begin_pixel(cursor); }
+  void begin_pixel(walk::Cursor& cursor) const { walker_.begin_pixel(cursor); }
 
   // Takes the node's caches through the packets left out before its next one.
   void warm_up(std::uint32_t node, std::uint64_t packet) {
@@ -141,7 +141,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
     begun_[node] = next + 1;
   }
 
-  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  walk::Stop advance(std::uint32_t node, walk::Cursor& cursor, cost::NodeStatistics& statistics) {
     if constexpr (Walker::steps_singly) {
       if (input_.step_by_step) {
         return walker_.template advance<false>(node, cursor, statistics);
@@ -152,20 +152,20 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
 
   // Lets a node work until it needs something shared.
   void run(std::uint32_t node) {
-    Cursor& cursor = cursors_[node];
-    NodeStatistics& statistics = statistics_[node];
+    walk::Cursor& cursor = cursors_[node];
+    cost::NodeStatistics& statistics = statistics_[node];
     const sim::Ticks from = cursor.time;
-    const Stop stop = advance(node, cursor, statistics);
-    if (stop == Stop::end) {
+    const walk::Stop stop = advance(node, cursor, statistics);
+    if (stop == walk::Stop::end) {
       walker_.finish_pixel(node, cursor, statistics);
     }
-    watch(node, NodeState::working, from);
+    watch(node, walk::NodeState::working, from);
     constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
     post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
   }
 
   void read(std::uint32_t node) {
-    const Cursor& cursor = cursors_[node];
+    const walk::Cursor& cursor = cursors_[node];
     Base::read_memory(node, {port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
@@ -173,7 +173,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   [[gnu::always_inline]] void read_done(std::uint32_t node, const memory::Service& service) {
     spend(node, service);
     watch_read(node, service);
-    Cursor& cursor = cursors_[node];
+    walk::Cursor& cursor = cursors_[node];
     cursor.time = service.done;
     walker_.note_wait(cursor, service);
     walker_.pass(cursor);
@@ -184,4 +184,4 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, Cursor> 
   std::vector<std::uint64_t> begun_;  // with a sample: one past the packet that each node has begun last
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -2,9 +2,9 @@
 
 #include "processors/walk/second_level.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
-memory::DistributedConfig distributed_config(const MachineConfig& config) {
+memory::DistributedConfig distributed_config(const machine::MachineConfig& config) {
   return {config.nodes,
           config.distribution.interleave,
           config.distribution.header_bytes,
@@ -15,21 +15,21 @@ memory::DistributedConfig distributed_config(const MachineConfig& config) {
           config.network};
 }
 
-std::unique_ptr<memory::Interconnect> make_memory_system(const MachineConfig& config,
+std::unique_ptr<memory::Interconnect> make_memory_system(const machine::MachineConfig& config,
                                                          const memory::InterconnectSite& site) {
-  if (config.placement == Placement::distributed) {
+  if (config.placement == machine::Placement::distributed) {
     return std::make_unique<memory::Distributed>(distributed_config(config), site);
   }
-  return memory::make_interconnect(config.interconnect, banks_of(config), site);
+  return memory::make_interconnect(config.interconnect, walk::banks_of(config), site);
 }
 
-bool has_links(const MachineConfig& config) {
-  if (config.scheme == Scheme::space) {
+bool has_links(const machine::MachineConfig& config) {
+  if (config.scheme == machine::Scheme::space) {
     return false;
   }
-  return config.placement == Placement::distributed
+  return config.placement == machine::Placement::distributed
              ? config.network.kind != memory::NetworkKind::ideal
              : config.interconnect.kind != memory::InterconnectKind::ideal;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -6,7 +6,7 @@
 
 #include "processors/node/node_factory.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count) {
   std::vector<std::uint32_t> order(count);
@@ -17,11 +17,11 @@ std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t coun
   return order;
 }
 
-bool has_context_nodes(const ReplayInput& input) {
+bool has_context_nodes(const walk::ReplayInput& input) {
   return input.with_contexts || input.config.contexts > 1 || input.config.prefetch.on();
 }
 
-std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine, Host& host) {
+std::unique_ptr<NodeArray> make_node_array(const walk::ReplayInput& input, sim::Engine& engine, Host& host) {
   if (input.stripped != nullptr) {
     return make_stripped_nodes(input, engine, host);
   }
@@ -36,4 +36,4 @@ std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine
   return contexts ? make_context_nodes(input, engine, host) : make_image_nodes(input, engine, host);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -20,7 +20,7 @@
 #include "processors/walk/second_level.h"
 #include "sim/engine.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// Event classes. At equal times a node's own progress comes before requests to the host, replies come before
 /// new requests (an interconnect's data do not wait for an address of the same instant), and reads before
@@ -44,17 +44,17 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual sim::Ticks end() const = 0;
   /// After the run: fills in idle time and the times that follow from counts.
   virtual void finish() = 0;
-  [[nodiscard]] virtual std::vector<NodeStatistics> statistics() const = 0;
+  [[nodiscard]] virtual std::vector<cost::NodeStatistics> statistics() const = 0;
   /// After the run: the result of building the tree; empty when the tree is given.
   [[nodiscard]] virtual BuildResult build_result() const { return {}; }
   /// After the run: the counts of private second-level caches; empty when there are none.
-  [[nodiscard]] virtual SecondLevelResult second_level() const { return {}; }
+  [[nodiscard]] virtual walk::SecondLevelResult second_level() const { return {}; }
   /// After the run: the counts beyond hits and misses that were asked for.
-  [[nodiscard]] virtual CacheCountResult cache_counts() const { return {}; }
+  [[nodiscard]] virtual walk::CacheCountResult cache_counts() const { return {}; }
   /// After the run: the counts of contexts and prefetches; empty when there are none.
-  [[nodiscard]] virtual ContextResult context_result() const { return {}; }
+  [[nodiscard]] virtual walk::ContextResult context_result() const { return {}; }
   /// After the run: the figures of each packet of a sample; empty without a sample.
-  [[nodiscard]] virtual std::vector<PacketFigures> packet_figures() const { return {}; }
+  [[nodiscard]] virtual std::vector<walk::PacketFigures> packet_figures() const { return {}; }
   /// Host bytes for each simulated node, without its cache tags.
   [[nodiscard]] virtual std::size_t bytes_per_node() const = 0;
 };
@@ -63,7 +63,7 @@ class NodeArray : public sim::EventHandler {
 [[nodiscard]] std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count);
 
 /// Builds the nodes with the look-up code for the configured caches.
-[[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const ReplayInput& input, sim::Engine& engine,
+[[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const walk::ReplayInput& input, sim::Engine& engine,
                                                          Host& host);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -16,7 +16,7 @@
 #include "processors/walk/observer.h"
 #include "sim/large_pages.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// `Derived` has run(node), which lets a node work until it needs something shared; read_done(node, service);
 /// and for_pixel(cursor), whether the node's present work is for the pixel at its cursor. `Cursor` has time,
@@ -30,11 +30,13 @@ class PacketNodes : public NodeArray {
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return end_; }
-  std::vector<NodeStatistics> statistics() const override { return {statistics_.begin(), statistics_.end()}; }
-  std::vector<PacketFigures> packet_figures() const override { return meter_.figures(); }
+  std::vector<cost::NodeStatistics> statistics() const override {
+    return {statistics_.begin(), statistics_.end()};
+  }
+  std::vector<walk::PacketFigures> packet_figures() const override { return meter_.figures(); }
 
  protected:
-  PacketNodes(const ReplayInput& input, sim::Engine& engine, Host& host)
+  PacketNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host)
       : input_(input),
         engine_(engine),
         host_(host),
@@ -43,7 +45,7 @@ class PacketNodes : public NodeArray {
         ports_(input.config.ports_of_node()),
         meter_(input.sample == nullptr ? 0 : input.packets.size(), input.config.all_nodes()),
         writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
-        late_(writes_done_later(input.config) ? input.config.all_nodes() : 0) {
+        late_(machine::writes_done_later(input.config) ? input.config.all_nodes() : 0) {
     clients_.reserve(input.config.clusters);
     for (std::uint32_t cluster = 0; cluster < input.config.clusters; ++cluster) {
       clients_.emplace_back(derived(), cluster * input.config.nodes * ports_, ports_);
@@ -76,21 +78,21 @@ class PacketNodes : public NodeArray {
   [[gnu::always_inline]] void post(EventClass event_class, sim::Ticks time, std::uint32_t node) {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event_class), node));
   }
-  void spend(std::uint32_t node, Activity activity, sim::Ticks time) {
+  void spend(std::uint32_t node, cost::Activity activity, sim::Ticks time) {
     statistics_[node].time[static_cast<std::size_t>(activity)] += time;
   }
   void spend(std::uint32_t node, const memory::Service& service) {
-    add_service(statistics_[node].time, service);
+    cost::add_service(statistics_[node].time, service);
   }
   // Tells the observer, if there is one, that the node was in `state` from `from` to its present time.
-  void watch(std::uint32_t node, NodeState state, sim::Ticks from, bool for_pixel = true) {
+  void watch(std::uint32_t node, walk::NodeState state, sim::Ticks from, bool for_pixel = true) {
     if (input_.observer != nullptr) {
-      if (state == NodeState::working) {
+      if (state == walk::NodeState::working) {
         watch_work(node, for_pixel);
       }
       if (from != cursors_[node].time) {
         input_.observer->spent(node, state, from, cursors_[node].time,
-                               for_pixel ? place_of(node) : PixelPlace{});
+                               for_pixel ? place_of(node) : walk::PixelPlace{});
       }
     }
   }
@@ -100,7 +102,7 @@ class PacketNodes : public NodeArray {
     if (input_.causes == nullptr) {
       return;
     }
-    LogPlace place;
+    walk::LogPlace place;
     if (for_pixel) {
       const Cursor& cursor = cursors_[node];
       place.pixel = cursor.y * input_.log.width + cursor.x;
@@ -111,12 +113,12 @@ class PacketNodes : public NodeArray {
   // Tells the observer of a read that is done and was asked for at the node's present time.
   void watch_read(std::uint32_t node, const memory::Service& service, bool for_pixel = true) {
     if (input_.observer != nullptr) {
-      spent_reading(*input_.observer, node, service, cursors_[node].time,
-                    for_pixel ? place_of(node) : PixelPlace{});
+      walk::spent_reading(*input_.observer, node, service, cursors_[node].time,
+                          for_pixel ? place_of(node) : walk::PixelPlace{});
     }
   }
   // Tells the observer that the node's misses since the last call were for `pixel`.
-  void watch_misses(std::uint32_t node, PixelPlace pixel) {
+  void watch_misses(std::uint32_t node, walk::PixelPlace pixel) {
     if (input_.observer == nullptr) {
       return;
     }
@@ -130,17 +132,19 @@ class PacketNodes : public NodeArray {
   void watch_idle() {
     for (std::uint32_t node = 0; input_.observer != nullptr && node < cursors_.size(); ++node) {
       if (statistics_[node].finish != end_) {
-        input_.observer->spent(node, NodeState::idle, statistics_[node].finish, end_, {});
+        input_.observer->spent(node, walk::NodeState::idle, statistics_[node].finish, end_, {});
       }
     }
   }
   /// Host bytes that every kind of node takes: the cursor, statistics, an event, and the write buffer.
   [[nodiscard]] std::size_t common_bytes() const {
-    return sizeof(Cursor) + sizeof(NodeStatistics) + sim::EventQueue::bytes_an_event +
+    return sizeof(Cursor) + sizeof(cost::NodeStatistics) + sim::EventQueue::bytes_an_event +
            input_.config.write_buffer * sizeof(sim::Ticks) + (late_.empty() ? 0 : sizeof(LateWrites));
   }
 
-  [[nodiscard]] PixelPlace place_of(std::uint32_t node) const { return {cursors_[node].x, cursors_[node].y}; }
+  [[nodiscard]] walk::PixelPlace place_of(std::uint32_t node) const {
+    return {cursors_[node].x, cursors_[node].y};
+  }
 
   // Puts the cursor before the first step of its pixel. Derived may replace it.
   void begin_pixel(Cursor& cursor) const {
@@ -162,14 +166,14 @@ class PacketNodes : public NodeArray {
       end_ = std::max(end_, cursor.time);
       return;
     }
-    spend(node, Activity::dispatch_wait, grant->start - cursor.time);
+    spend(node, cost::Activity::dispatch_wait, grant->start - cursor.time);
     ++statistics_[node].packets;
     const sim::Ticks asked = std::exchange(cursor.time, grant->start);
     if (input_.observer != nullptr) {
       if (input_.causes != nullptr) {
         input_.causes->granted(node, 0, asked, grant->start);
       }
-      watch(node, NodeState::dispatch_wait, asked, false);
+      watch(node, walk::NodeState::dispatch_wait, asked, false);
       input_.observer->began_packet(node, grant->packet, grant->start);
     }
     if (meter_.on()) {
@@ -237,11 +241,11 @@ class PacketNodes : public NodeArray {
     derived().run(node);
   }
 
-  ReplayInput input_;
+  walk::ReplayInput input_;
   sim::Engine& engine_;
   Host& host_;
   sim::LargeVector<Cursor> cursors_;
-  sim::LargeVector<NodeStatistics> statistics_;
+  sim::LargeVector<cost::NodeStatistics> statistics_;
   sim::Ticks end_ = 0;
   sim::Ticks last_write_done_ = 0;  // of the write posted last
   std::uint32_t ports_;             // of each node
@@ -270,9 +274,9 @@ class PacketNodes : public NodeArray {
 
   void wait_for_room(std::uint32_t node, sim::Ticks room_at) {
     Cursor& cursor = cursors_[node];
-    spend(node, Activity::queue_full_wait, room_at - cursor.time);
+    spend(node, cost::Activity::queue_full_wait, room_at - cursor.time);
     const sim::Ticks from = std::exchange(cursor.time, room_at);
-    watch(node, NodeState::queue_full_wait, from, derived().for_pixel(cursor));
+    watch(node, walk::NodeState::queue_full_wait, from, derived().for_pixel(cursor));
     post(EventClass::write, room_at, node);
   }
 
@@ -311,7 +315,7 @@ class PacketNodes : public NodeArray {
   };
   static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
 
-  PacketMeter meter_;                    // on with a sample of packets
+  walk::PacketMeter meter_;              // on with a sample of packets
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free
   sim::LargeVector<LateWrites> late_;    // empty where the end of a write is known at once
   std::int64_t late_writes_ = 0;         // number of writes whose end is not known
@@ -320,4 +324,4 @@ class PacketNodes : public NodeArray {
   std::vector<std::int64_t> seen_misses_;  // already reported to the observer; empty without one
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

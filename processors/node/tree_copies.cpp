@@ -4,13 +4,14 @@
 
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
-TreeCopies::TreeCopies(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
-                       const MachineConfig& config, unsigned line_shift)
+TreeCopies::TreeCopies(const walk::TreePlan& plan, const accel::Topology& topology,
+                       const memory::Layout& layout, const machine::MachineConfig& config,
+                       unsigned line_shift)
     : plan_(plan),
       topology_(topology),
-      private_(config.build.sharing == Sharing::private_trees),
+      private_(config.build.sharing == machine::Sharing::private_trees),
       nodes_(config.nodes),
       copies_(private_ ? config.all_nodes() : config.clusters),
       lazies_(plan.lazy().size()),
@@ -43,9 +44,9 @@ TreeCopies::TreeCopies(const TreePlan& plan, const accel::Topology& topology, co
   if (lines_ == 0) {
     return;
   }
-  for (const TreePlan::LazyBranch& branch : plan.lazy()) {
-    const TreePlan::Place& place = plan.place(branch.node);
-    for (std::uint32_t copy = 0; place.home == TreePlan::none && copy < copies_; ++copy) {
+  for (const walk::TreePlan::LazyBranch& branch : plan.lazy()) {
+    const walk::TreePlan::Place& place = plan.place(branch.node);
+    for (std::uint32_t copy = 0; place.home == walk::TreePlan::none && copy < copies_; ++copy) {
       count_open(copy, layout.address(memory::RecordKind::node, place.record), node_bytes_, 1);
     }
   }
@@ -67,7 +68,7 @@ void TreeCopies::count_open(std::uint32_t copy, memory::Address begin, std::uint
 
 void TreeCopies::take(std::uint32_t copy, std::uint32_t lazy, std::uint32_t builder) {
   sim::ensure(!taken(copy, lazy), "a branch is split twice in one tree");
-  const TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
+  const walk::TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
   const memory::Address block = next_[copy];
   block_[at(copy, lazy)] = block;
   next_[copy] = block + branch.block_bytes;
@@ -92,10 +93,10 @@ void TreeCopies::publish(std::uint32_t copy, std::uint32_t lazy) {
   if (private_) {
     return;
   }
-  const TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
+  const walk::TreePlan::LazyBranch& branch = plan_.lazy()[lazy];
   count_open(copy, block(copy, lazy), branch.block_bytes, -1);
-  const TreePlan::Place& place = plan_.place(branch.node);
-  const memory::Address record = place.home == TreePlan::none
+  const walk::TreePlan::Place& place = plan_.place(branch.node);
+  const memory::Address record = place.home == walk::TreePlan::none
                                      ? node_section_ + place.record * plan_.stride()
                                      : block(copy, place.home) + place.record * plan_.stride();
   count_open(copy, record, node_bytes_, -1);
@@ -118,4 +119,4 @@ bool TreeCopies::maybe_cached(std::uint32_t copy, std::uint32_t line) const {
   return lines_ != 0 && (line < initial_lines_ || line >= lower_begin_) && cached_[index_of(copy, line)] != 0;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

@@ -7,7 +7,7 @@
 
 #include "processors/walk/tree_plan.h"
 
-namespace marti::processors {
+namespace marti::processors::node {
 
 /// Which lines of one copy are settled, that is, have their final content. Lines are those of the caches, or
 /// interleave units without a cache.
@@ -29,8 +29,8 @@ struct LineStates {
 class TreeCopies {
  public:
   /// Throws UserError when the copies would take more than `most_bytes` of the host's memory.
-  TreeCopies(const TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
-             const MachineConfig& config, unsigned line_shift);
+  TreeCopies(const walk::TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
+             const machine::MachineConfig& config, unsigned line_shift);
 
   /// The copy that a processor node reads.
   [[nodiscard]] std::uint32_t copy_of(std::uint32_t processor) const {
@@ -75,7 +75,7 @@ class TreeCopies {
   // Adds `by` to the number of open records and lists in each line that these bytes touch.
   void count_open(std::uint32_t copy, memory::Address begin, std::uint64_t bytes, std::int32_t by);
 
-  const TreePlan& plan_;
+  const walk::TreePlan& plan_;
   const accel::Topology& topology_;
   bool private_;
   std::uint32_t nodes_;
@@ -97,4 +97,4 @@ class TreeCopies {
   memory::Address node_section_ = 0;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::node

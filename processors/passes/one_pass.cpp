@@ -12,7 +12,7 @@
 #include "processors/walk/record_places.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 namespace {
 
@@ -94,29 +94,30 @@ struct PassedCaches {
 
 }  // namespace
 
-OnePass one_pass(const WorkLog& log, const MachineConfig& config, std::span<const memory::CacheShape> shapes,
+OnePass one_pass(const program::WorkLog& log, const machine::MachineConfig& config,
+                 std::span<const memory::CacheShape> shapes,
                  std::span<const std::vector<std::uint64_t>> packets_of_node) {
-  sim::ensure(
-      config.cache.organisation == CacheOrganisation::unified && config.build.sharing == Sharing::given,
-      "one pass is for a unified cache and a given tree");
+  sim::ensure(config.cache.organisation == machine::CacheOrganisation::unified &&
+                  config.build.sharing == machine::Sharing::given,
+              "one pass is for a unified cache and a given tree");
   for (const memory::CacheShape& shape : shapes) {
     sim::ensure(shape.sets > 0 && (1U << shape.line_shift) == config.cache.cache.line,
                 "one pass is for caches of one line size");
   }
-  MachineConfig plain = config;  // every reference goes to the first level and no further
-  plain.placement = Placement::shared;
+  machine::MachineConfig plain = config;  // every reference goes to the first level and no further
+  plain.placement = machine::Placement::shared;
   plain.l2 = {};
-  std::optional<TreePlan> given;
-  const memory::Layout layout = layout_of(log, plain, given);
-  const PacketList packets(log.width, log.height, plain.packets);
-  const std::vector<std::uint32_t> rank = node_ranks(log, plain);
-  const ReplayInput input = {log, plain, layout, packets, rank};
-  LogWalker<PassedCaches> walker(input, PassedCaches{Passes(shapes)});
+  std::optional<walk::TreePlan> given;
+  const memory::Layout layout = walk::layout_of(log, plain, given);
+  const machine::PacketList packets(log.width, log.height, plain.packets);
+  const std::vector<std::uint32_t> rank = walk::node_ranks(log, plain);
+  const walk::ReplayInput input = {log, plain, layout, packets, rank};
+  walk::LogWalker<PassedCaches> walker(input, PassedCaches{Passes(shapes)});
   OnePass pass;
-  NodeStatistics statistics;
+  cost::NodeStatistics statistics;
   for (const std::vector<std::uint64_t>& numbers : packets_of_node) {
     walker.caches().passes.empty_caches();
-    for_each_pixel(input, numbers, [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
+    walk::for_each_pixel(input, numbers, [&](walk::Cursor& cursor, std::uint32_t, std::uint32_t) {
       pass.words += static_cast<std::uint64_t>(cursor.word_end - cursor.word);
       (void)walker.template advance<true>(0, cursor, statistics);
       walker.finish_pixel(0, cursor, statistics);
@@ -130,11 +131,12 @@ OnePass one_pass(const WorkLog& log, const MachineConfig& config, std::span<cons
   return pass;
 }
 
-std::vector<std::uint64_t> words_of_packets(const WorkLog& log, const PacketConfig& config) {
-  const PacketList packets(log.width, log.height, config);
+std::vector<std::uint64_t> words_of_packets(const program::WorkLog& log,
+                                            const machine::PacketConfig& config) {
+  const machine::PacketList packets(log.width, log.height, config);
   std::vector<std::uint64_t> words(packets.size());
   for (std::uint64_t number = 0; number < packets.size(); ++number) {
-    const Packet packet = packets[number];
+    const machine::Packet packet = packets[number];
     for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
       words[number] += log.rows[y].begin[packet.x1] - log.rows[y].begin[packet.x0];
     }
@@ -142,4 +144,4 @@ std::vector<std::uint64_t> words_of_packets(const WorkLog& log, const PacketConf
   return words;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

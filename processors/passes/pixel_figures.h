@@ -11,7 +11,7 @@
 #include "processors/walk/observer.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 struct PixelFigures {
   sim::Ticks hit_time = 0;        ///< what it takes if every reference hits
@@ -21,7 +21,8 @@ struct PixelFigures {
 
 /// One for each of `pixels`, which one node walks in their order, each twice. `config` must have a given
 /// tree, one context and no second level of caches.
-[[nodiscard]] std::vector<PixelFigures> pixel_figures(const WorkLog& log, const MachineConfig& config,
-                                                      std::span<const PixelPlace> pixels);
+[[nodiscard]] std::vector<PixelFigures> pixel_figures(const program::WorkLog& log,
+                                                      const machine::MachineConfig& config,
+                                                      std::span<const walk::PixelPlace> pixels);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

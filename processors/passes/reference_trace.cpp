@@ -4,22 +4,22 @@
 
 #include "processors/walk/log_walker.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 namespace {
 
 // A cache that never holds a line: the walk stops at every reference.
-struct EmptyCaches : NoCaches {
+struct EmptyCaches : walk::NoCaches {
   static constexpr bool present = true;
 };
 
 template <class Caches>
-void walk_packets(const ReplayInput& input, std::span<const std::uint64_t> packets,
+void walk_packets(const walk::ReplayInput& input, std::span<const std::uint64_t> packets,
                   const std::function<void(const Reference&)>& take) {
-  LogWalker<Caches> walker(input, Caches{});
-  NodeStatistics statistics;
-  for_each_pixel(input, packets, [&](Cursor& cursor, std::uint32_t x, std::uint32_t y) {
-    while (walker.template advance<true>(0, cursor, statistics) == Stop::miss) {
+  walk::LogWalker<Caches> walker(input, Caches{});
+  cost::NodeStatistics statistics;
+  walk::for_each_pixel(input, packets, [&](walk::Cursor& cursor, std::uint32_t x, std::uint32_t y) {
+    while (walker.template advance<true>(0, cursor, statistics) == walk::Stop::miss) {
       take({cursor.kind, cursor.at, false});
       walker.pass(cursor);
     }
@@ -31,12 +31,12 @@ void walk_packets(const ReplayInput& input, std::span<const std::uint64_t> packe
 }  // namespace
 
 void ReferenceTrace::for_each(std::uint32_t node, const std::function<void(const Reference&)>& take) const {
-  const ReplayInput walked = input(true);
-  if (walked.config.cache.organisation == CacheOrganisation::none) {
-    walk_packets<NoCaches>(walked, packets_of(node), take);
+  const walk::ReplayInput walked = input(true);
+  if (walked.config.cache.organisation == machine::CacheOrganisation::none) {
+    walk_packets<walk::NoCaches>(walked, packets_of(node), take);
   } else {
     walk_packets<EmptyCaches>(walked, packets_of(node), take);
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

@@ -8,7 +8,7 @@
 #include "memory/record_kind.h"
 #include "processors/walk/packets_of_nodes.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 /// One reference: a read of one line of a record (without a cache: of one interleave unit), at the first byte
 /// of the record in that line; or the write of a whole pixel.
@@ -20,10 +20,10 @@ struct Reference {
 
 /// Observes a replay to learn which node traces which packets; afterwards it walks each node's part of the
 /// log again (processors/walk/packets_of_nodes.h says for which machines).
-class ReferenceTrace final : public PacketsOfNodes {
+class ReferenceTrace final : public walk::PacketsOfNodes {
  public:
   /// Calls `take` for each reference of a node. Call it after the replay, while the log still exists.
   void for_each(std::uint32_t node, const std::function<void(const Reference&)>& take) const;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

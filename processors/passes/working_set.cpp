@@ -14,16 +14,16 @@
 #include "processors/walk/log_walker.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 namespace {
 
 // The caches of one node, as configured.
-std::vector<memory::CacheShape> shapes_of(const NodeCacheConfig& config) {
+std::vector<memory::CacheShape> shapes_of(const machine::NodeCacheConfig& config) {
   std::vector<memory::CacheShape> shapes;
-  if (config.organisation == CacheOrganisation::unified) {
+  if (config.organisation == machine::CacheOrganisation::unified) {
     shapes.push_back(memory::shape_of(config.cache));
-  } else if (config.organisation == CacheOrganisation::split) {
+  } else if (config.organisation == machine::CacheOrganisation::split) {
     for (const std::uint64_t size : config.split_sizes) {
       memory::CacheConfig part = config.cache;
       part.size = size;
@@ -72,7 +72,7 @@ struct PassingCaches {
   struct View {
     std::vector<CachePass>* passes;
     [[gnu::always_inline]] bool access(memory::RecordKind kind, std::uint32_t line) const {
-      (*passes)[Split ? split_cache_of[static_cast<std::size_t>(kind)] : 0].access(line);
+      (*passes)[Split ? walk::split_cache_of[static_cast<std::size_t>(kind)] : 0].access(line);
       return true;
     }
   };
@@ -82,9 +82,9 @@ struct PassingCaches {
 };
 
 template <bool Split>
-std::vector<CacheWorkingSet> walk_nodes(const PacketsOfNodes& packets_of_nodes, const ReplayInput& input,
-                                        unsigned threads) {
-  using Walker = LogWalker<PassingCaches<Split>>;
+std::vector<CacheWorkingSet> walk_nodes(const walk::PacketsOfNodes& packets_of_nodes,
+                                        const walk::ReplayInput& input, unsigned threads) {
+  using Walker = walk::LogWalker<PassingCaches<Split>>;
   const std::vector<memory::CacheShape> shapes = shapes_of(input.config.cache);
   tbb::enumerable_thread_specific<Walker> walkers([&] {
     PassingCaches<Split> caches;
@@ -98,11 +98,11 @@ std::vector<CacheWorkingSet> walk_nodes(const PacketsOfNodes& packets_of_nodes, 
     for (CachePass& pass : walker.caches().passes) {
       pass.empty_caches();
     }
-    NodeStatistics statistics;
-    for_each_pixel(input, packets_of_nodes.packets_of(node),
-                   [&](Cursor& cursor, std::uint32_t, std::uint32_t) {
-                     (void)walker.template advance<true>(0, cursor, statistics);
-                   });
+    cost::NodeStatistics statistics;
+    walk::for_each_pixel(input, packets_of_nodes.packets_of(node),
+                         [&](walk::Cursor& cursor, std::uint32_t, std::uint32_t) {
+                           (void)walker.template advance<true>(0, cursor, statistics);
+                         });
   };
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
   arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, packets_of_nodes.nodes(), walk); });
@@ -124,25 +124,25 @@ std::vector<CacheWorkingSet> walk_nodes(const PacketsOfNodes& packets_of_nodes, 
   return sum;
 }
 
-bool packets_are_fixed(const MachineConfig& config) {
-  return config.all_nodes() == 1 || config.host.assignment != Assignment::dynamic;
+bool packets_are_fixed(const machine::MachineConfig& config) {
+  return config.all_nodes() == 1 || config.host.assignment != machine::Assignment::dynamic;
 }
 
 }  // namespace
 
-void check_working_set(const MachineConfig& config) {
+void check_working_set(const machine::MachineConfig& config) {
   if (!config.count.working_set) {
     return;
   }
-  if (config.scheme != Scheme::image) {
+  if (config.scheme != machine::Scheme::image) {
     throw sim::KeyError("count.working_set", "the working set is told for machine.scheme = \"image\" only");
   }
-  if (config.cache.organisation == CacheOrganisation::none) {
+  if (config.cache.organisation == machine::CacheOrganisation::none) {
     throw sim::KeyError(
         "count.working_set",
         "without a cache (cache.organisation) nodes read parts of lines, and there is no working set");
   }
-  if (config.build.sharing != Sharing::given) {
+  if (config.build.sharing != machine::Sharing::given) {
     throw sim::KeyError(
         "count.working_set",
         "the working set is told for build.sharing = \"given\" only: while the tree is built, other nodes "
@@ -164,37 +164,39 @@ void check_working_set(const MachineConfig& config) {
   }
 }
 
-WorkingSet working_set(const PacketsOfNodes& packets_of_nodes, unsigned threads) {
-  const ReplayInput input = packets_of_nodes.input(false);
-  const bool split = input.config.cache.organisation == CacheOrganisation::split;
+WorkingSet working_set(const walk::PacketsOfNodes& packets_of_nodes, unsigned threads) {
+  const walk::ReplayInput input = packets_of_nodes.input(false);
+  const bool split = input.config.cache.organisation == machine::CacheOrganisation::split;
   return {.line = input.config.cache.cache.line,
           .any_cache = packets_are_fixed(input.config),
           .caches = split ? walk_nodes<true>(packets_of_nodes, input, threads)
                           : walk_nodes<false>(packets_of_nodes, input, threads)};
 }
 
-void check_working_set(const WorkingSet& set, const MachineConfig& config, const MachineResult& result) {
-  const ReferenceCounts counts = result.references();
+void check_working_set(const WorkingSet& set, const machine::MachineConfig& config,
+                       const replay::MachineResult& result) {
+  const cost::ReferenceCounts counts = result.references();
   for (std::size_t i = 0; i < set.caches.size(); ++i) {
     std::int64_t references = 0;
     std::int64_t misses = 0;
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-      if (set.caches.size() == 1 || split_cache_of[kind] == i) {
+      if (set.caches.size() == 1 || walk::split_cache_of[kind] == i) {
         references += counts.hits[kind] + counts.misses[kind];
         misses += counts.misses[kind];
       }
     }
     const CacheWorkingSet& cache = set.caches[i];
-    require_equal(cache.distances.references, references, "one pass meets the references of the replay");
-    require(cache.shape.sets == 1 || cache.ways.references == references,
-            "the pass over all ways meets the references of the replay");
+    walk::require_equal(cache.distances.references, references,
+                        "one pass meets the references of the replay");
+    walk::require(cache.shape.sets == 1 || cache.ways.references == references,
+                  "the pass over all ways meets the references of the replay");
     if (config.cache.cache.replacement == memory::Replacement::lru) {
-      require_equal(cache.shape.sets == 1 ? cache.distances.misses(cache.shape.ways)
-                                          : cache.ways.misses(cache.shape.ways),
-                    misses, "one pass finds the misses of the replay");
+      walk::require_equal(cache.shape.sets == 1 ? cache.distances.misses(cache.shape.ways)
+                                                : cache.ways.misses(cache.shape.ways),
+                          misses, "one pass finds the misses of the replay");
     }
-    require(misses >= cache.distances.compulsory, "a cache misses at least the first uses of lines");
+    walk::require(misses >= cache.distances.compulsory, "a cache misses at least the first uses of lines");
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

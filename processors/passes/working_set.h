@@ -19,7 +19,7 @@
 #include "processors/replay/replay.h"
 #include "processors/walk/packets_of_nodes.h"
 
-namespace marti::processors {
+namespace marti::processors::passes {
 
 /// Sums over all nodes' caches of one kind, without pixel writes, which bypass caches.
 struct CacheWorkingSet {
@@ -41,14 +41,15 @@ inline constexpr std::uint32_t counted_ways = 16;
 inline constexpr std::uint32_t most_counted_ways = 4096;
 
 /// Throws UserError with the reason when the working sets of the machine's nodes cannot be determined.
-void check_working_set(const MachineConfig& config);
+void check_working_set(const machine::MachineConfig& config);
 
 /// Call it after the replay of a machine that passes check_working_set(), while the log still exists.
 /// `threads` host threads (0: all) share the nodes; the result does not depend on their number.
-[[nodiscard]] WorkingSet working_set(const PacketsOfNodes& packets_of_nodes, unsigned threads = 0);
+[[nodiscard]] WorkingSet working_set(const walk::PacketsOfNodes& packets_of_nodes, unsigned threads = 0);
 
 /// Throws InternalError unless the machine's own counts agree with the pass: equal numbers of references;
 /// with LRU equal misses, and with another replacement at least as many misses as first uses of lines.
-void check_working_set(const WorkingSet& set, const MachineConfig& config, const MachineResult& result);
+void check_working_set(const WorkingSet& set, const machine::MachineConfig& config,
+                       const replay::MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::passes

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 BankCourses::BankCourses(const memory::BankConfig& config, const memory::Interconnect& memory,
                          PathPieces& pieces)
@@ -63,4 +63,4 @@ void BankCourses::forget_arrived(sim::Ticks now) {
   std::erase_if(coming_, [&](const auto& line) { return line.second.end() <= now; });
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -11,7 +11,7 @@
 #include "memory/interconnect.h"
 #include "processors/path/path_pieces.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 class BankCourses {
  public:
@@ -53,4 +53,4 @@ class BankCourses {
   std::size_t most_coming_ = 64;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 CriticalPath add_up(const PathPieces& pieces, const PathTip& tip, std::uint32_t nodes, LogLevels& levels) {
   const PathSum sum = pieces.sum_of(tip, levels);
@@ -24,4 +24,4 @@ CriticalPath add_up(const PathPieces& pieces, const PathTip& tip, std::uint32_t 
   return path;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

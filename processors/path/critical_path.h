@@ -8,7 +8,7 @@
 #include "processors/path/path_pieces.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// A chain of pieces of work from 0 to the end of the frame, each beginning when the one before it ends.
 struct CriticalPath {
@@ -25,4 +25,4 @@ struct CriticalPath {
 [[nodiscard]] CriticalPath add_up(const PathPieces& pieces, const PathTip& tip, std::uint32_t nodes,
                                   LogLevels& levels);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

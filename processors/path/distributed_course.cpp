@@ -7,7 +7,7 @@
 #include "sim/error.h"
 #include "sim/event.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 namespace {
 
@@ -16,9 +16,9 @@ using sim::Ticks;
 // Events and their sequence numbers are those of memory/distributed.cpp.
 class DistributedCourse final : public MemoryCourse {
  public:
-  DistributedCourse(const MachineConfig& config, PathPieces& pieces)
+  DistributedCourse(const machine::MachineConfig& config, PathPieces& pieces)
       : pieces_(pieces),
-        config_(distributed_config(config)),
+        config_(node::distributed_config(config)),
         ports_per_node_(config.ports_of_node()),
         access_(config_.clock.cycles(config_.access_cycles)),
         beat_(config_.clock.cycles(config_.cycles_per_beat)),
@@ -114,8 +114,9 @@ class DistributedCourse final : public MemoryCourse {
 
 }  // namespace
 
-std::unique_ptr<MemoryCourse> make_distributed_course(const MachineConfig& config, PathPieces& pieces) {
+std::unique_ptr<MemoryCourse> make_distributed_course(const machine::MachineConfig& config,
+                                                      PathPieces& pieces) {
   return std::make_unique<DistributedCourse>(config, pieces);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 template <class T>
 class Fifo {
@@ -31,4 +31,4 @@ class Fifo {
   std::size_t first_ = 0;  // the oldest entry that was not taken out
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <span>
 
-namespace marti::processors {
+namespace marti::processors::path {
 
-std::uint32_t LogLevels::level_at(LogPlace place) {
+std::uint32_t LogLevels::level_at(walk::LogPlace place) {
   const std::span<const LoggedStep> steps = steps_to(place);
   return steps.empty() ? 0 : steps.back().level;
 }
 
-std::span<const LogLevels::LoggedStep> LogLevels::steps_to(LogPlace place) {
-  if (place.pixel == LogPlace::nowhere) {
+std::span<const LogLevels::LoggedStep> LogLevels::steps_to(walk::LogPlace place) {
+  if (place.pixel == walk::LogPlace::nowhere) {
     return {};
   }
   constexpr std::uint32_t golden = 2654435769U;  // Fibonacci hashing: Knuth, TAOCP 3, section 6.4
@@ -32,29 +32,31 @@ void LogLevels::read(Pixel& pixel) const {
       log_.pixel(pixel.number % log_.width, pixel.number / log_.width);
   for (std::size_t at = 0; at < words.size();) {
     const std::uint32_t word = words[at];
-    at += step_words(&words[at]);
-    const std::uint32_t level = visits_node(step_of(word)) ? log_.topology.nodes[operand_of(word)].level : 0;
+    at += program::step_words(&words[at]);
+    const std::uint32_t level = program::visits_node(program::step_of(word))
+                                    ? log_.topology.nodes[program::operand_of(word)].level
+                                    : 0;
     pixel.steps.push_back({static_cast<std::uint32_t>(at), level, traversal_of(word)});
   }
 }
 
 sim::Ticks LogLevels::traversal_of(std::uint32_t word) const {
-  switch (step_of(word)) {
-    case Step::branch:
+  switch (program::step_of(word)) {
+    case program::Step::branch:
       return ticks_.branch;
-    case Step::leaf:
-    case Step::partial_leaf:
-    case Step::mailed_leaf:
+    case program::Step::leaf:
+    case program::Step::partial_leaf:
+    case program::Step::mailed_leaf:
       return ticks_.leaf;
-    case Step::ray:
-      return ticks_.ray[ray_number_of(operand_of(word))];
-    case Step::cut:
+    case program::Step::ray:
+      return ticks_.ray[program::ray_number_of(program::operand_of(word))];
+    case program::Step::cut:
       return ticks_.cut;
-    case Step::pass:
+    case program::Step::pass:
       return ticks_.pass;
     default:
       return 0;
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -11,20 +11,21 @@
 #include "sim/error.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// Log and topology must outlive it. Level 1 is the root's; 0 stands for steps that visit no tree node.
 class LogLevels {
  public:
-  LogLevels(const WorkLog& log, const StepTicks& ticks) : log_(log), ticks_(ticks), pixels_(remembered) {}
+  LogLevels(const program::WorkLog& log, const cost::StepTicks& ticks)
+      : log_(log), ticks_(ticks), pixels_(remembered) {}
 
   /// The level of the step that the place ends with; 0 for a place in no pixel or before the first step.
-  [[nodiscard]] std::uint32_t level_at(LogPlace place);
+  [[nodiscard]] std::uint32_t level_at(walk::LogPlace place);
 
   /// Divides `traversal`, the traversal time of the steps before `place`, among their levels: calls
   /// add(level, ticks), the last step first, until all of it is divided.
   template <class Add>
-  void divide(LogPlace place, sim::Ticks traversal, const Add& add);
+  void divide(walk::LogPlace place, sim::Ticks traversal, const Add& add);
 
  private:
   struct LoggedStep {
@@ -34,24 +35,24 @@ class LogLevels {
   };
 
   struct Pixel {
-    std::uint32_t number = LogPlace::nowhere;
+    std::uint32_t number = walk::LogPlace::nowhere;
     std::vector<LoggedStep> steps;
   };
   // Pieces of several nodes, which are at different pixels, take turns on a path.
   static constexpr std::size_t remembered = 64;
 
   // The steps of the place's pixel that end at or before its word.
-  std::span<const LoggedStep> steps_to(LogPlace place);
+  std::span<const LoggedStep> steps_to(walk::LogPlace place);
   void read(Pixel& pixel) const;
   [[nodiscard]] sim::Ticks traversal_of(std::uint32_t word) const;
 
-  const WorkLog& log_;
-  StepTicks ticks_;
+  const program::WorkLog& log_;
+  cost::StepTicks ticks_;
   std::vector<Pixel> pixels_;  // those asked for last
 };
 
 template <class Add>
-void LogLevels::divide(LogPlace place, sim::Ticks traversal, const Add& add) {
+void LogLevels::divide(walk::LogPlace place, sim::Ticks traversal, const Add& add) {
   const std::span<const LoggedStep> steps = steps_to(place);
   for (std::size_t step = steps.size(); step > 0 && traversal > 0;) {
     --step;
@@ -61,4 +62,4 @@ void LogLevels::divide(LogPlace place, sim::Ticks traversal, const Add& add) {
   sim::ensure(traversal == 0, "the steps of a piece of a path do not add up to its length");
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -12,7 +12,7 @@
 #include "processors/walk/second_level.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 namespace {
 
@@ -39,12 +39,12 @@ class IdealCourse final : public MemoryCourse {
 // A transaction's whole course is known when it is asked for.
 class CrossbarCourse final : public MemoryCourse {
  public:
-  CrossbarCourse(const MachineConfig& config, const memory::Interconnect& memory, PathPieces& pieces)
+  CrossbarCourse(const machine::MachineConfig& config, const memory::Interconnect& memory, PathPieces& pieces)
       : pieces_(pieces),
         beats_(config.interconnect),
         latency_(config.interconnect.clock.cycles(config.interconnect.latency_cycles)),
-        banks_(banks_of(config), memory, pieces),
-        links_(banks_of(config).banks()) {}
+        banks_(walk::banks_of(config), memory, pieces),
+        links_(walk::banks_of(config).banks()) {}
   void ask(const PathRequest& request) override { request_ = request; }
   PathTip read_done(std::uint32_t /*port*/) override {
     const auto& [transaction, asking, owner, write] = request_;
@@ -78,13 +78,13 @@ class CrossbarCourse final : public MemoryCourse {
 // address of a read.
 class BusCourse final : public MemoryCourse {
  public:
-  BusCourse(const MachineConfig& config, const memory::Interconnect& memory, PathPieces& pieces)
+  BusCourse(const machine::MachineConfig& config, const memory::Interconnect& memory, PathPieces& pieces)
       : pieces_(pieces),
         beats_(config.interconnect),
         address_(config.interconnect.clock.cycles(config.interconnect.address_cycles)),
         split_(config.interconnect.mode == memory::BusMode::split),
         arbitrated_(dynamic_cast<const memory::ArbitratedBus*>(&memory)),
-        banks_(banks_of(config), memory, pieces),
+        banks_(walk::banks_of(config), memory, pieces),
         ports_(std::size_t{config.nodes} * config.ports_of_node()) {}
 
   void ask(const PathRequest& request) override {
@@ -158,9 +158,9 @@ class BusCourse final : public MemoryCourse {
 
 }  // namespace
 
-std::unique_ptr<MemoryCourse> make_memory_course(const MachineConfig& config,
+std::unique_ptr<MemoryCourse> make_memory_course(const machine::MachineConfig& config,
                                                  const memory::Interconnect& memory, PathPieces& pieces) {
-  if (config.placement == Placement::distributed) {
+  if (config.placement == machine::Placement::distributed) {
     return make_distributed_course(config, pieces);
   }
   switch (config.interconnect.kind) {
@@ -174,17 +174,17 @@ std::unique_ptr<MemoryCourse> make_memory_course(const MachineConfig& config,
   return std::make_unique<BusCourse>(config, memory, pieces);
 }
 
-std::uint64_t course_bytes(const MachineConfig& config) {
+std::uint64_t course_bytes(const machine::MachineConfig& config) {
   constexpr std::uint64_t bytes_a_request = sizeof(PathRequest) + 16;  // with its home and how far it is
   // An entry of a Fifo may take the place of four: half of them may be taken out, and its vector half full.
   constexpr std::uint64_t bytes_a_write = 4 * bytes_a_request;
   constexpr std::uint64_t bytes_a_port = 2 * bytes_a_request + bytes_a_write;
   const std::uint64_t bytes_a_cluster =
-      config.placement == Placement::distributed
+      config.placement == machine::Placement::distributed
           ? config.nodes * sizeof(PathTip) + network_course_bytes(config.network, config.nodes)
-          : 2 * std::uint64_t{banks_of(config).banks()} * sizeof(PathTip);
+          : 2 * std::uint64_t{walk::banks_of(config).banks()} * sizeof(PathTip);
   return config.all_nodes() * (config.ports_of_node() * bytes_a_port + config.write_buffer * bytes_a_write) +
          config.clusters * bytes_a_cluster;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -13,7 +13,7 @@
 #include "processors/machine/machine_config.h"
 #include "processors/path/path_pieces.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// A read or write as a node asks for it.
 struct PathRequest {
@@ -40,14 +40,14 @@ class MemoryCourse {
 };
 
 /// The course of a cluster's memory system `memory`, which must outlive it, as the pieces must.
-[[nodiscard]] std::unique_ptr<MemoryCourse> make_memory_course(const MachineConfig& config,
+[[nodiscard]] std::unique_ptr<MemoryCourse> make_memory_course(const machine::MachineConfig& config,
                                                                const memory::Interconnect& memory,
                                                                PathPieces& pieces);
 /// At most so many bytes of the host are taken by the courses of all clusters, without pieces and lines that
 /// a shared cache brings in.
-[[nodiscard]] std::uint64_t course_bytes(const MachineConfig& config);
+[[nodiscard]] std::uint64_t course_bytes(const machine::MachineConfig& config);
 /// As make_memory_course() where the memory is spread over the nodes.
-[[nodiscard]] std::unique_ptr<MemoryCourse> make_distributed_course(const MachineConfig& config,
+[[nodiscard]] std::unique_ptr<MemoryCourse> make_distributed_course(const machine::MachineConfig& config,
                                                                     PathPieces& pieces);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

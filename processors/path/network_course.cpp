@@ -4,7 +4,7 @@
 
 #include "memory/routes.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::uint64_t network_course_bytes(const NetworkConfig& config, std::uint32_t no
   return memory::network_bytes(config, nodes) / sizeof(Ticks) * sizeof(PathTip);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -7,7 +7,7 @@
 #include "memory/network.h"
 #include "processors/path/path_pieces.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 class NetworkCourse {
  public:
@@ -26,4 +26,4 @@ class NetworkCourse {
 /// At most so many bytes of the host are taken by such a course, without pieces.
 [[nodiscard]] std::uint64_t network_course_bytes(const memory::NetworkConfig& config, std::uint32_t nodes);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -8,7 +8,7 @@
 #include "processors/walk/cause_observer.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// What is done in a piece. Those up to messaging are the activities of these names.
 enum class PathKind : std::uint8_t {
@@ -36,7 +36,7 @@ inline constexpr std::array<std::string_view, path_kinds> path_kind_names = {
 /// For whom a piece is done.
 struct PathOwner {
   std::uint32_t node = 0;
-  LogPlace place;  ///< what the node had come to when it began, or asked for, the piece
+  walk::LogPlace place;  ///< what the node had come to when it began, or asked for, the piece
 };
 
 /// A piece as it is read back.
@@ -54,4 +54,4 @@ struct PathPiece {
   }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -6,7 +6,7 @@
 #include "sim/error.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 namespace {
 
@@ -173,4 +173,4 @@ void PathPieces::leave(std::uint32_t index) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

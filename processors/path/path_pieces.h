@@ -18,7 +18,7 @@
 #include "sim/memory_budget.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 class PathPieces;
 
@@ -134,4 +134,4 @@ void PathPieces::each_from_the_end(const PathTip& tip, const Visit& visit) const
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

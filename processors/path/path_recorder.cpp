@@ -6,23 +6,23 @@
 #include "sim/error.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 namespace {
 
 constexpr const char* key = "record.critical_path";
 
-sim::Ticks of(const TimeDivision& time, Activity activity) {
+sim::Ticks of(const cost::TimeDivision& time, cost::Activity activity) {
   return time[static_cast<std::size_t>(activity)];
 }
 
-sim::Ticks of_memory(const TimeDivision& time) {
-  return of(time, Activity::transfer) + of(time, Activity::bank_access);
+sim::Ticks of_memory(const cost::TimeDivision& time) {
+  return of(time, cost::Activity::transfer) + of(time, cost::Activity::bank_access);
 }
 
 }  // namespace
 
-void check_critical_path(const MachineConfig& config) {
+void check_critical_path(const machine::MachineConfig& config) {
   if (config.banks.dram && config.banks.dram->policy == memory::DramPolicy::frfcfs) {
     throw sim::KeyError(key,
                         "with dram.policy = \"frfcfs\" an access waits for whatever is chosen before it, "
@@ -30,14 +30,14 @@ void check_critical_path(const MachineConfig& config) {
   }
 }
 
-void PathRecorder::begin(const ReplayInput& input) {
-  const MachineConfig& config = input.config;
+void PathRecorder::begin(const walk::ReplayInput& input) {
+  const machine::MachineConfig& config = input.config;
   check_critical_path(config);
   sim::ensure(input.causes == this && input.stripped == nullptr && input.sample == nullptr,
               "a critical path is recorded of whole frames only, step by step");
   builds_ = input.tree != nullptr;
-  const bool rays_move = config.scheme != Scheme::image;
-  asks_host_ = !rays_move && config.host.assignment == Assignment::dynamic;
+  const bool rays_move = config.scheme != machine::Scheme::image;
+  asks_host_ = !rays_move && config.host.assignment == machine::Assignment::dynamic;
   contexts_ = config.contexts;
   ports_ = config.ports_of_node();
   write_buffer_ = config.write_buffer;
@@ -47,7 +47,7 @@ void PathRecorder::begin(const ReplayInput& input) {
   const std::size_t workers = builds_ ? contexts_ : 0;
   pieces_.take(nodes * (sizeof(Node) + (ports_ + write_buffer_ + workers) * sizeof(PathTip)) +
                course_bytes(config));
-  ticks_ = step_ticks(config, input.log);
+  ticks_ = cost::step_ticks(config, input.log);
   levels_.emplace(input.log, ticks_);
   pieces_.set_levels(*levels_);
   nodes_.resize(nodes);
@@ -59,24 +59,24 @@ void PathRecorder::begin(const ReplayInput& input) {
   }
 }
 
-void PathRecorder::worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) {
+void PathRecorder::worked(std::uint32_t node, const cost::NodeStatistics& statistics, walk::LogPlace place) {
   Node& n = nodes_[node];
   n.counted = statistics.time;
-  add_counted_time(ticks_, statistics.steps, statistics.references.all_hits(), n.counted);
+  cost::add_counted_time(ticks_, statistics.steps, statistics.references.all_hits(), n.counted);
   n.place = place;
 }
 
-void PathRecorder::spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to,
-                         PixelPlace /*pixel*/) {
+void PathRecorder::spent(std::uint32_t node, walk::NodeState state, sim::Ticks from, sim::Ticks to,
+                         walk::PixelPlace /*pixel*/) {
   Node& n = nodes_[node];
   switch (state) {
-    case NodeState::idle:
+    case walk::NodeState::idle:
       return;
-    case NodeState::working:
+    case walk::NodeState::working:
       add_work(node, from, to);
       return;
-    case NodeState::transfer:
-    case NodeState::bank_access:
+    case walk::NodeState::transfer:
+    case walk::NodeState::bank_access:
       n.waited += to - from;
       break;
     default:
@@ -92,7 +92,7 @@ void PathRecorder::add_work(std::uint32_t node, sim::Ticks from, sim::Ticks to) 
   const PathOwner owner = {node, n.place};
   std::array<sim::Ticks, path_kinds> parts{};
   sim::Ticks rest = to - from;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(Activity::messaging); ++i) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(cost::Activity::messaging); ++i) {
     parts[i] = n.counted[i] - n.seen[i];
     rest -= parts[i];
   }
@@ -121,11 +121,11 @@ const PathTip& PathRecorder::tip_at(std::uint32_t node, sim::Ticks now) {
 
 const PathTip& PathRecorder::end_of_wait(std::uint32_t node) const {
   const Node& n = nodes_[node];
-  if (n.wait == NodeState::queue_full_wait) {
+  if (n.wait == walk::NodeState::queue_full_wait) {
     return writes_[entry_of(node, n.writes)];  // the oldest: its entry is the next one to be used
   }
-  return n.wait == NodeState::lock_wait ? releases_[node * contexts_ + n.context]
-                                        : due_[node * ports_ + n.slot];
+  return n.wait == walk::NodeState::lock_wait ? releases_[node * contexts_ + n.context]
+                                              : due_[node * ports_ + n.slot];
 }
 
 void PathRecorder::granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) {
@@ -180,7 +180,7 @@ PathRequest PathRecorder::request(std::uint32_t port, const memory::Transaction&
   if (write) {
     ++nodes_[node].writes;
   }
-  return {transaction, tip, {node, write ? LogPlace{} : nodes_[node].place}, write};
+  return {transaction, tip, {node, write ? walk::LogPlace{} : nodes_[node].place}, write};
 }
 
 void PathRecorder::sent_camera_ray(std::uint32_t cluster, std::uint32_t to, sim::Ticks now) {
@@ -195,8 +195,8 @@ void PathRecorder::set_aside(std::uint32_t ray, std::uint32_t sender, sim::Ticks
   rays_->ray(ray) = sending(sender, now);
 }
 
-void PathRecorder::sent(const RayMessage& message) {
-  if (message.ray == RayMessage::none) {
+void PathRecorder::sent(const walk::RayMessage& message) {
+  if (message.ray == walk::RayMessage::none) {
     (void)rays_->send(sending(message.sender, message.sent), message);
     return;
   }
@@ -270,4 +270,4 @@ void PathRecorder::end(sim::Ticks time) {
   nodes_.clear();
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

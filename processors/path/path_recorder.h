@@ -14,23 +14,24 @@
 #include "processors/walk/cause_observer.h"
 #include "processors/walk/observer.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// Throws KeyError, naming record.critical_path, for a machine whose critical path is not recorded.
-void check_critical_path(const MachineConfig& config);
+void check_critical_path(const machine::MachineConfig& config);
 
 /// One object records one replay. The observer of the replay must be this object or pass all calls on to it.
-class PathRecorder final : public Observer, public CauseObserver {
+class PathRecorder final : public walk::Observer, public walk::CauseObserver {
  public:
   /// What does not fit the budget ends the replay with a KeyError. `fold_from`: as PathPieces.
   explicit PathRecorder(const sim::MemoryBudget& budget, std::uint32_t fold_from = PathPieces::usual_fold)
       : pieces_(budget, fold_from) {}
 
-  void begin(const ReplayInput& input) override;
-  void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override;
+  void begin(const walk::ReplayInput& input) override;
+  void spent(std::uint32_t node, walk::NodeState state, sim::Ticks from, sim::Ticks to,
+             walk::PixelPlace pixel) override;
   void end(sim::Ticks time) override;
 
-  void worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) override;
+  void worked(std::uint32_t node, const cost::NodeStatistics& statistics, walk::LogPlace place) override;
   void granted(std::uint32_t node, std::uint32_t context, sim::Ticks asked, sim::Ticks start) override;
   void prefetched(std::uint32_t node, std::uint32_t slot, sim::Ticks from, sim::Ticks to) override;
   void wait_ended(std::uint32_t node, std::uint32_t context, std::uint32_t slot) override;
@@ -38,7 +39,7 @@ class PathRecorder final : public Observer, public CauseObserver {
   void published(std::uint32_t builder, std::uint32_t waiter) override;
   void sent_camera_ray(std::uint32_t cluster, std::uint32_t to, sim::Ticks now) override;
   void set_aside(std::uint32_t ray, std::uint32_t sender, sim::Ticks now) override;
-  void sent(const RayMessage& message) override;
+  void sent(const walk::RayMessage& message) override;
   void took(std::uint32_t node, std::uint32_t ray, sim::Ticks now) override;
   void let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) override;
 
@@ -62,18 +63,18 @@ class PathRecorder final : public Observer, public CauseObserver {
 
  private:
   struct Node {
-    PathTip begin;            // up to the beginning of the frame
-    PathTip tip;              // up to what the node has done, or to where its wait began
-    LogPlace place;           // where it was then
-    TimeDivision seen{};      // what it had counted when it worked last
-    TimeDivision counted{};   // what it has counted now
-    sim::Ticks waited = 0;    // transfers and bank accesses that it has waited for since it worked last
-    sim::Ticks wait_end = 0;  // of its last wait
-    NodeState wait = NodeState::idle;  // what it waited for last
-    std::uint32_t context = 0;         // that could go on when its last wait ended
-    std::uint32_t slot = 0;            // the port that this context had waited for
-    std::uint64_t writes = 0;          // that it has made
-    std::uint64_t writes_done = 0;     // of these, that are known to be done
+    PathTip begin;                 // up to the beginning of the frame
+    PathTip tip;                   // up to what the node has done, or to where its wait began
+    walk::LogPlace place;          // where it was then
+    cost::TimeDivision seen{};     // what it had counted when it worked last
+    cost::TimeDivision counted{};  // what it has counted now
+    sim::Ticks waited = 0;         // transfers and bank accesses that it has waited for since it worked last
+    sim::Ticks wait_end = 0;       // of its last wait
+    walk::NodeState wait = walk::NodeState::idle;  // what it waited for last
+    std::uint32_t context = 0;                     // that could go on when its last wait ended
+    std::uint32_t slot = 0;                        // the port that this context had waited for
+    std::uint64_t writes = 0;                      // that it has made
+    std::uint64_t writes_done = 0;                 // of these, that are known to be done
   };
 
   // The chain of `node` up to `now`: when it has waited until then, that of what ended the wait.
@@ -93,7 +94,7 @@ class PathRecorder final : public Observer, public CauseObserver {
   }
 
   PathPieces pieces_;
-  StepTicks ticks_;
+  cost::StepTicks ticks_;
   bool builds_ = false;
   bool asks_host_ = false;
   std::size_t contexts_ = 1;
@@ -112,4 +113,4 @@ class PathRecorder final : public Observer, public CauseObserver {
   CriticalPath path_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

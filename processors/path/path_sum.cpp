@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 void PathSum::join(const PathPiece& last) {
   if (pieces_ == 0) {
@@ -64,4 +64,4 @@ void PathSum::prepend(const PathSum& before) {
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -10,7 +10,7 @@
 #include "processors/path/path_piece.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// Of a tree level: the traversal time of its nodes' visits, and the time of transfers, bank accesses and
 /// hits of a shared cache that the steps at its nodes asked for.
@@ -53,4 +53,4 @@ class PathSum {
   PathPiece last_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

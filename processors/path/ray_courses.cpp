@@ -4,9 +4,9 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
-RayCourses::RayCourses(const MachineConfig& config, PathPieces& pieces)
+RayCourses::RayCourses(const machine::MachineConfig& config, PathPieces& pieces)
     : pieces_(pieces),
       nodes_(config.all_nodes()),
       nodes_of_cluster_(config.nodes),
@@ -28,9 +28,9 @@ PathTip& RayCourses::ray(std::uint32_t number) {
   return rays_[number];
 }
 
-PathTip RayCourses::send(const PathTip& sent, const RayMessage& message) {
+PathTip RayCourses::send(const PathTip& sent, const walk::RayMessage& message) {
   const bool from_host = is_host(message.sender);
-  const bool to_host = message.ray == RayMessage::none;
+  const bool to_host = message.ray == walk::RayMessage::none;
   const PathOwner owner = {from_host ? message.to : message.sender, {}};
   const std::uint32_t cluster = owner.node / nodes_of_cluster_;
   const auto port_of = [&](std::uint32_t node) { return node - cluster * nodes_of_cluster_; };
@@ -62,4 +62,4 @@ void RayCourses::send_camera_ray(std::uint32_t cluster, std::uint32_t to, sim::T
   host.ready = pieces_.append(host.sending, occupancy_, {to, {}}, PathKind::dispatch);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

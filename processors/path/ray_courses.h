@@ -11,17 +11,17 @@
 #include "processors/path/path_pieces.h"
 #include "processors/walk/cause_observer.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 class RayCourses {
  public:
   /// The pieces must outlive it.
-  RayCourses(const MachineConfig& config, PathPieces& pieces);
+  RayCourses(const machine::MachineConfig& config, PathPieces& pieces);
 
   /// The chain of a ray that is under way, in a queue or set aside.
   PathTip& ray(std::uint32_t number);
   /// The chain with the message's way through its network. A contribution's is kept if it ends last.
-  PathTip send(const PathTip& sent, const RayMessage& message);
+  PathTip send(const PathTip& sent, const walk::RayMessage& message);
   /// The chain of the contribution that arrives last, the first of those that arrive at the same time.
   [[nodiscard]] const PathTip& last_contribution() const { return last_contribution_; }
 
@@ -51,4 +51,4 @@ class RayCourses {
   PathTip last_contribution_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

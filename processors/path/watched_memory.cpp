@@ -5,14 +5,14 @@
 #include "processors/node/memory_system.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
-WatchedMemory::WatchedMemory(const MachineConfig& config, const memory::InterconnectSite& site,
+WatchedMemory::WatchedMemory(const machine::MachineConfig& config, const memory::InterconnectSite& site,
                              PathRecorder& recorder)
     : site_(site),
       recorder_(recorder),
-      memory_(make_memory_system(config, {site.engine, *this, site.reply_class, site.first_component,
-                                          site.ports, site.memory_class})),
+      memory_(node::make_memory_system(config, {site.engine, *this, site.reply_class, site.first_component,
+                                                site.ports, site.memory_class})),
       course_(make_memory_course(config, *memory_, recorder.pieces())) {}
 
 void WatchedMemory::ask(const memory::Transaction& transaction, bool write) {
@@ -57,4 +57,4 @@ void WatchedMemory::write_done(std::uint32_t port, sim::Ticks done) {
   site_.client.write_done(port, done);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

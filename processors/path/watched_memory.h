@@ -9,13 +9,14 @@
 #include "processors/path/memory_course.h"
 #include "processors/path/path_recorder.h"
 
-namespace marti::processors {
+namespace marti::processors::path {
 
 /// Stands between a cluster's nodes and their memory system and passes everything on. The recorder must
 /// outlive it. Throws InternalError when a transaction is not done at the end of its recorded chain.
 class WatchedMemory final : public memory::Interconnect, private memory::InterconnectClient {
  public:
-  WatchedMemory(const MachineConfig& config, const memory::InterconnectSite& site, PathRecorder& recorder);
+  WatchedMemory(const machine::MachineConfig& config, const memory::InterconnectSite& site,
+                PathRecorder& recorder);
 
   void read(const memory::Transaction& transaction) override;
   void write(const memory::Transaction& transaction) override;
@@ -56,4 +57,4 @@ class WatchedMemory final : public memory::Interconnect, private memory::Interco
   std::unique_ptr<MemoryCourse> course_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::path

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 struct Image {
   std::uint32_t width = 0;
@@ -18,4 +18,4 @@ struct Image {
   }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 Emitters::Emitters(const scenes::Scene& scene) {
   std::vector<double> emitted;  // of each material
@@ -43,4 +43,4 @@ Emitters::Choice Emitters::choose(double number) const {
   return {triangles_[at], area_[at] * (sum / weight)};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -19,7 +19,7 @@
 #include "scenes/scene.h"
 #include "sim/mix.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// What a random number at a surface point decides.
 enum class Draw : std::uint32_t {
@@ -179,4 +179,4 @@ EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitt
   return sample;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 class PixelSet {
  public:
@@ -48,4 +48,4 @@ class PixelSet {
   std::vector<std::uint64_t> bits_;  // row by row; those after the last pixel are 0
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

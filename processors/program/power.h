@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// base^exponent for base in [0, 1] and exponent >= 0, with a relative error below 1e-12 where the result
 /// is above 1e-30, and 0 below 2^-1000. base 0 gives 0 (1 for exponent 0).
@@ -52,4 +52,4 @@ Real power(const Real& base, const Real& exponent) {
   return result * Real(std::bit_cast<double>(scale));
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

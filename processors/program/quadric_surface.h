@@ -4,7 +4,7 @@
 #include "accel/quadric_shape.h"
 #include "processors/program/shading.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// The surface at `hit`, the point of a ray at its t, seen along `direction`. The point is moved onto the
 /// surface along the normal; what remains of its error is the rounding of that move, in each coordinate.
@@ -48,4 +48,4 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   return surface;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -1,6 +1,6 @@
 #include "processors/program/ray_tree.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 namespace {
 
@@ -63,4 +63,4 @@ void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -8,7 +8,7 @@
 
 #include "processors/program/work_log.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// One ray of a pixel: its words from its `ray` step to the next ray's. A shadow ray that reaches its light
 /// has that light's contribution among its words.
@@ -37,4 +37,4 @@ struct LoggedRay {
 /// fewer bounces; words before the first `ray` step belong to that ray. `rays` keeps its capacity.
 void rays_of_sample(std::span<const std::uint32_t> words, std::vector<LoggedRay>& rays);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

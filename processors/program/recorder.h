@@ -19,7 +19,7 @@
 #include "sim/chunks.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// Which part of the program runs; the boundaries at which the operation mixes are divided.
 enum class Phase : std::uint8_t { ray, shade, texel, light, pixel };
@@ -132,4 +132,4 @@ class RowRecorder {
   sim::Chunks chunks_;  // of the rows
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

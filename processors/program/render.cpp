@@ -11,7 +11,7 @@
 #include "processors/program/voxel_average.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 namespace {
 
@@ -169,4 +169,4 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   return frame;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -18,7 +18,7 @@ class Structure;
 class TriangleSet;
 }  // namespace marti::accel
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// The largest RenderOptions::max_depth.
 inline constexpr std::uint32_t max_ray_depth = 64;
@@ -96,4 +96,4 @@ struct Frame {
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -1,7 +1,7 @@
 // The tracer in floats, in a file of its own because it compiles every structure and recorder once more.
 #include "processors/program/render_rows.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                       const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
@@ -11,4 +11,4 @@ void render_in_floats(const scenes::Scene& scene, const accel::Structure& struct
   });
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -19,7 +19,7 @@
 #include "processors/program/render.h"
 #include "processors/program/tracer.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// What one host thread keeps from row to row.
 template <typename Recorder>
@@ -121,4 +121,4 @@ void render_in_floats(const scenes::Scene& scene, const accel::Structure& struct
                       const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,
                       Frame& frame);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -8,7 +8,7 @@
 
 #include "sim/mix.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// A point of the image, in pixels from its upper left corner: pixel (x, y) is [x, x + 1) by [y, y + 1).
 struct SamplePoint {
@@ -68,4 +68,4 @@ class SamplePoints {
   std::uint32_t columns_ = 1;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -17,7 +17,7 @@
 #include "scenes/scene.h"
 #include "scenes/texture.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// A hit point made ready for shading.
 template <typename Real>
@@ -265,4 +265,4 @@ bool refracted(const Surface<Real>& surface, const Vec3<Real>& direction, const 
   return dot(out, surface.geometric) < Real(0.0) || bend(surface.geometric);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -41,7 +41,7 @@
 #include "scenes/texture.h"
 #include "sim/mix.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// A structure whose closest() takes a footprint too and may see a voxel: see voxel_average.h.
 template <typename Structure>
@@ -427,4 +427,4 @@ class Tracer {
   std::size_t depth_of_stack_ = 0;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 template <typename Real>
 struct Vec3 {
@@ -64,4 +64,4 @@ Vec3<Real> absolute(const Vec3<Real>& a) {
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

@@ -14,7 +14,7 @@
 #include "scenes/texture.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 namespace {
 
@@ -342,4 +342,4 @@ Surface<double> VoxelAverages::surface(std::uint32_t voxel, const Vec3<double>& 
   return surface;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

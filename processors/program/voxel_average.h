@@ -17,7 +17,7 @@
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// An averaged material record and its cell.
 struct AverageVoxel {
@@ -98,4 +98,4 @@ class CutStructure : public accel::CutOctree {
   double threshold_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

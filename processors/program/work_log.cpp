@@ -5,7 +5,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t lights, std::size_t textures) {
   const auto fits = [](const char* what, std::size_t count) {
@@ -92,4 +92,4 @@ LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades) {
   return totals;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

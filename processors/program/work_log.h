@@ -22,7 +22,7 @@
 #include "accel/traversal.h"
 #include "sim/chunks.h"
 
-namespace marti::processors {
+namespace marti::processors::program {
 
 /// Which light the program follows: mirror images and refractions only, or also the light that surfaces
 /// scatter to each other (tracer.h).
@@ -189,4 +189,4 @@ void check_log_capacity(std::size_t nodes, std::size_t materials, std::size_t li
 /// Counts the whole log in one pass; with `shades`, also the shaded points of each material.
 [[nodiscard]] LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades = nullptr);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::program

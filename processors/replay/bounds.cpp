@@ -7,31 +7,32 @@
 #include "processors/node/memory_system.h"
 #include "processors/walk/law.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 namespace {
 
-sim::Ticks part(const NodeStatistics& node, std::initializer_list<Activity> parts) {
+sim::Ticks part(const cost::NodeStatistics& node, std::initializer_list<cost::Activity> parts) {
   sim::Ticks sum = 0;
-  for (const Activity activity : parts) {
+  for (const cost::Activity activity : parts) {
     sum = sim::add_ticks(sum, node.time[static_cast<std::size_t>(activity)]);
   }
   return sum;
 }
 
-sim::Ticks own_work(const NodeStatistics& node) {
-  return part(node, {Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
-                     Activity::cache_access, Activity::switching, Activity::messaging, Activity::transfer,
-                     Activity::bank_access});
+sim::Ticks own_work(const cost::NodeStatistics& node) {
+  return part(node, {cost::Activity::traversal, cost::Activity::intersection, cost::Activity::shading,
+                     cost::Activity::building, cost::Activity::cache_access, cost::Activity::switching,
+                     cost::Activity::messaging, cost::Activity::transfer, cost::Activity::bank_access});
 }
 
 // The bus is held by a read while the bank works, so banks are not queues of their own.
-bool bus_holds_banks(const MachineConfig& config) {
+bool bus_holds_banks(const machine::MachineConfig& config) {
   return config.interconnect.kind == memory::InterconnectKind::bus &&
          config.interconnect.mode == memory::BusMode::held;
 }
 
-std::vector<double> demands_of(const MachineConfig& config, const ClusterResult& cluster, double reads) {
+std::vector<double> demands_of(const machine::MachineConfig& config, const ClusterResult& cluster,
+                               double reads) {
   std::vector<double> demands;
   const auto busy = static_cast<double>(cluster.interconnect.busy);
   if (config.interconnect.kind == memory::InterconnectKind::bus) {
@@ -54,21 +55,22 @@ std::vector<double> demands_of(const MachineConfig& config, const ClusterResult&
   return demands;
 }
 
-Prediction predict_cluster(const MachineConfig& config, const MachineResult& result, std::uint32_t cluster) {
+Prediction predict_cluster(const machine::MachineConfig& config, const MachineResult& result,
+                           std::uint32_t cluster) {
   Prediction prediction;
   prediction.cluster = cluster;
   prediction.reads = result.clusters[cluster].interconnect.reads;
   const auto reads = static_cast<double>(prediction.reads);
-  ClosedNetwork& network = prediction.network;
+  theory::ClosedNetwork& network = prediction.network;
   network.customers = 0;
   double work = 0.0;
   double delays = 0.0;
   for (std::uint32_t i = 0; i < config.nodes; ++i) {
-    const NodeStatistics& node = result.nodes[cluster * config.nodes + i];
+    const cost::NodeStatistics& node = result.nodes[cluster * config.nodes + i];
     network.customers += had_work(node) ? 1 : 0;
     work += static_cast<double>(own_work(node));
     delays += static_cast<double>(
-        part(node, {Activity::lock_wait, Activity::message_wait, Activity::dispatch_wait}));
+        part(node, {cost::Activity::lock_wait, cost::Activity::message_wait, cost::Activity::dispatch_wait}));
   }
   network.customers = std::max<std::uint64_t>(network.customers, 1);
   network.demands = demands_of(config, result.clusters[cluster], reads);
@@ -78,10 +80,10 @@ Prediction predict_cluster(const MachineConfig& config, const MachineResult& res
   }
   const auto n = static_cast<double>(network.customers);
   prediction.asymptotic_low = std::max(work / n, network.largest() * reads);
-  const ThroughputRange balanced = balanced_job_bounds(network);
+  const theory::ThroughputRange balanced = theory::balanced_job_bounds(network);
   prediction.balanced_low = reads / balanced.high;
   prediction.balanced_high = reads / balanced.low;
-  const MeanValues values = mean_values(network);
+  const theory::MeanValues values = theory::mean_values(network);
   prediction.mean_value = reads / values.throughput;
   prediction.exact = values.exact;
   return prediction;
@@ -89,7 +91,7 @@ Prediction predict_cluster(const MachineConfig& config, const MachineResult& res
 
 }  // namespace
 
-bool had_work(const NodeStatistics& node) {
+bool had_work(const cost::NodeStatistics& node) {
   if (node.packets > 0 || own_work(node) > 0) {
     return true;
   }
@@ -100,7 +102,7 @@ bool had_work(const NodeStatistics& node) {
 
 sim::Ticks FrameBounds::least() const { return std::max({node_work, interconnect, bank}); }
 
-FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& result) {
+FrameBounds frame_bounds(const machine::MachineConfig& config, const MachineResult& result) {
   FrameBounds bounds;
   sim::Ticks all = 0;
   sim::Ticks workers = 0;
@@ -117,12 +119,12 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
   // Between two accesses a bank is busy for its busy time; the last access ends with its data instead. A
   // distributed memory is busy for exactly as long as its accesses take, and DRAM for as long as it moves
   // data.
-  const sim::Ticks last = config.placement == Placement::distributed || config.banks.dram
+  const sim::Ticks last = config.placement == machine::Placement::distributed || config.banks.dram
                               ? 0
                               : config.banks.clock.cycles(config.banks.access_cycles) -
                                     config.banks.clock.cycles(config.banks.busy_cycles);
   for (const ClusterResult& cluster : result.clusters) {
-    if (has_links(config) && cluster.interconnect.links > 0) {
+    if (node::has_links(config) && cluster.interconnect.links > 0) {
       const std::int64_t links = cluster.interconnect.links;
       const sim::Ticks each =
           cluster.interconnect.busy / links + (cluster.interconnect.busy % links != 0 ? 1 : 0);
@@ -137,16 +139,17 @@ FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& resul
   return bounds;
 }
 
-void check_bounds(const MachineConfig& config, const MachineResult& result) {
+void check_bounds(const machine::MachineConfig& config, const MachineResult& result) {
   const FrameBounds bounds = frame_bounds(config, result);
-  require(result.end >= bounds.least(), "the frame ends after " + std::to_string(result.end) +
-                                            " ticks, but its busiest resource works for " +
-                                            std::to_string(bounds.least()));
+  walk::require(result.end >= bounds.least(), "the frame ends after " + std::to_string(result.end) +
+                                                  " ticks, but its busiest resource works for " +
+                                                  std::to_string(bounds.least()));
 }
 
-std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result) {
+std::optional<Prediction> predict(const machine::MachineConfig& config, const MachineResult& result) {
   // How long a DRAM bank takes depends on the accesses before, so it is no station with a demand of its own.
-  if (config.ports_of_node() > 1 || config.placement == Placement::distributed || config.banks.dram) {
+  if (config.ports_of_node() > 1 || config.placement == machine::Placement::distributed ||
+      config.banks.dram) {
     return std::nullopt;
   }
   std::optional<Prediction> longest;
@@ -162,4 +165,4 @@ std::optional<Prediction> predict(const MachineConfig& config, const MachineResu
   return longest;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -9,7 +9,7 @@
 #include "processors/replay/replay.h"
 #include "processors/theory/closed_network.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// No frame with this work can end earlier, in whatever order: each resource does one thing at a time.
 struct FrameBounds {
@@ -23,12 +23,12 @@ struct FrameBounds {
 };
 
 /// Whether the node took any part in the frame: a packet, a step, a ray or a branch to build.
-[[nodiscard]] bool had_work(const NodeStatistics& node);
+[[nodiscard]] bool had_work(const cost::NodeStatistics& node);
 
-[[nodiscard]] FrameBounds frame_bounds(const MachineConfig& config, const MachineResult& result);
+[[nodiscard]] FrameBounds frame_bounds(const machine::MachineConfig& config, const MachineResult& result);
 
 /// Throws InternalError when the frame ended before its bounds.
-void check_bounds(const MachineConfig& config, const MachineResult& result);
+void check_bounds(const machine::MachineConfig& config, const MachineResult& result);
 
 /// One cluster as a closed network: its nodes that had work are the customers, a cycle is one read of the
 /// interconnect. Times are picoseconds. Queues are the banks, the crossbar's links, and the bus; a bus that
@@ -38,7 +38,7 @@ void check_bounds(const MachineConfig& config, const MachineResult& result);
 struct Prediction {
   std::uint32_t cluster = 0;
   std::int64_t reads = 0;
-  ClosedNetwork network;
+  theory::ClosedNetwork network;
   // Frame times: number of reads divided by throughput.
   double asymptotic_low = 0.0;
   double balanced_low = 0.0;
@@ -50,6 +50,7 @@ struct Prediction {
 /// The prediction for the cluster with the longest predicted frame (by mean values). std::nullopt when no
 /// node reads over an interconnect, the frame takes no time, nodes have several reads outstanding (contexts,
 /// prefetching), the database is distributed, or the memory is one of DRAM.
-[[nodiscard]] std::optional<Prediction> predict(const MachineConfig& config, const MachineResult& result);
+[[nodiscard]] std::optional<Prediction> predict(const machine::MachineConfig& config,
+                                                const MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

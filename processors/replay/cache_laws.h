@@ -5,14 +5,15 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// Number of first-level misses and prefetches that no private second level served.
-[[nodiscard]] std::int64_t reads_beyond_caches(const MachineConfig& config, const MachineResult& result);
+[[nodiscard]] std::int64_t reads_beyond_caches(const machine::MachineConfig& config,
+                                               const MachineResult& result);
 
 /// Throws InternalError when a law is broken: the misses and prefetches of the first level are the
 /// references of the second; the misses of a shared second level, and all writes, are the accesses of the
 /// banks.
-void check_second_level_laws(const MachineConfig& config, const MachineResult& result);
+void check_second_level_laws(const machine::MachineConfig& config, const MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

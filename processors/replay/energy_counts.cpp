@@ -3,19 +3,20 @@
 #include "processors/replay/cache_laws.h"
 #include "processors/walk/node_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 namespace {
 
 // Adds the nodes' look-ups: without a cache there are none.
-void add_first_level(const MachineConfig& config, const MachineResult& result, EnergyCounts& counts) {
-  if (config.cache.organisation == CacheOrganisation::none) {
+void add_first_level(const machine::MachineConfig& config, const MachineResult& result,
+                     energy::EnergyCounts& counts) {
+  if (config.cache.organisation == machine::CacheOrganisation::none) {
     return;
   }
-  const bool split = config.cache.organisation == CacheOrganisation::split;
-  const ReferenceCounts references = result.references();
+  const bool split = config.cache.organisation == machine::CacheOrganisation::split;
+  const cost::ReferenceCounts references = result.references();
   for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-    const std::size_t cache = split ? split_cache_of.at(kind) : 0;
+    const std::size_t cache = split ? walk::split_cache_of.at(kind) : 0;
     sim::merge(counts.l1.at(cache), {references.hits.at(kind), references.misses.at(kind)});
   }
   counts.l1_prefetches = result.contexts.counts().issued;
@@ -23,8 +24,9 @@ void add_first_level(const MachineConfig& config, const MachineResult& result, E
 
 }  // namespace
 
-EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
-  EnergyCounts counts;
+energy::EnergyCounts energy_counts(const program::WorkLog& log, const machine::MachineConfig& config,
+                                   const MachineResult& result) {
+  energy::EnergyCounts counts;
   counts.traversal = log.traversal;
   counts.mailboxes = log.mailboxes;
   counts.integrator = log.integrator;
@@ -48,7 +50,7 @@ EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, cons
   counts.hop_bytes = config.network.kind == memory::NetworkKind::ideal ? network.bytes : network.link_bytes;
   // Every line that no cache holds is read from a bank or from the node's own memory, and each lock reads
   // its branch.
-  const std::int64_t served = config.l2.sharing == SecondLevel::shared ? counts.l2.hits : 0;
+  const std::int64_t served = config.l2.sharing == machine::SecondLevel::shared ? counts.l2.hits : 0;
   counts.memory_reads = reads_beyond_caches(config, result) + counts.build.locks - served;
   for (const ClusterResult& cluster : result.clusters) {
     for (std::size_t channel = 0; channel < cluster.dram.size(); ++channel) {
@@ -64,4 +66,4 @@ EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config, cons
   return counts;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -4,10 +4,11 @@
 #include "processors/energy/energy.h"
 #include "processors/replay/replay.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// The counts of a result of `config` on `log`.
-[[nodiscard]] EnergyCounts energy_counts(const WorkLog& log, const MachineConfig& config,
-                                         const MachineResult& result);
+[[nodiscard]] energy::EnergyCounts energy_counts(const program::WorkLog& log,
+                                                 const machine::MachineConfig& config,
+                                                 const MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -7,13 +7,13 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 namespace {
 
-std::int64_t samples_with_rays(const WorkLog& log) {
+std::int64_t samples_with_rays(const program::WorkLog& log) {
   std::int64_t pixels = 0;
-  for (const LogRow& row : log.rows) {
+  for (const program::LogRow& row : log.rows) {
     for (std::size_t x = 1; x < row.begin.size(); ++x) {
       pixels += row.begin[x] != row.begin[x - 1] ? 1 : 0;
     }
@@ -21,7 +21,7 @@ std::int64_t samples_with_rays(const WorkLog& log) {
   return pixels * log.samples;
 }
 
-void check_steps(const LogTotals& totals, const StepCounts& steps) {
+void check_steps(const program::LogTotals& totals, const cost::StepCounts& steps) {
   const std::array<std::pair<std::int64_t, std::uint64_t>, 14> pairs = {{
       {steps.camera_rays, totals.rays[0]},
       {steps.shadow_rays, totals.rays[1]},
@@ -39,25 +39,27 @@ void check_steps(const LogTotals& totals, const StepCounts& steps) {
       {steps.passes, totals.passes},
   }};
   for (const auto& [taken, logged] : pairs) {
-    require_equal(taken, static_cast<std::int64_t>(logged), "the steps taken are those of the log");
+    walk::require_equal(taken, static_cast<std::int64_t>(logged), "the steps taken are those of the log");
   }
-  require_equal(steps.pixels, 0, "pixels are finished by the host");
+  walk::require_equal(steps.pixels, 0, "pixels are finished by the host");
 }
 
 }  // namespace
 
-void check_flow_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result) {
-  const LogTotals totals = totals_of(log);
-  const FlowResult& flow = result.flow;
+void check_flow_conservation(const program::WorkLog& log, const machine::MachineConfig& config,
+                             const MachineResult& result) {
+  const program::LogTotals totals = program::totals_of(log);
+  const flow::FlowResult& flow = result.flow;
   check_steps(totals, result.steps());
 
-  FlowCounts sum;
+  flow::FlowCounts sum;
   sim::Ticks queued = 0;
-  for (const FlowCounts& node : flow.nodes) {
+  for (const flow::FlowCounts& node : flow.nodes) {
     // Many rays may wait at the same time, so the sum of their waits may be longer than the frame, and may
     // overflow although the frame time does not. That error is the input's, hence UserError.
     queued = sim::add_ticks(queued, node.queued);
-    require_equal(node.taken + node.made, node.passed_on + node.ended, "what comes to a node leaves it");
+    walk::require_equal(node.taken + node.made, node.passed_on + node.ended,
+                        "what comes to a node leaves it");
     sim::merge(sum, node);
   }
   std::int64_t messages = 0;
@@ -67,16 +69,16 @@ void check_flow_conservation(const WorkLog& log, const MachineConfig& config, co
     bytes += network.bytes;
   }
   const std::int64_t sent = result.host.requests;
-  require_equal(sent, samples_with_rays(log), "every camera ray is sent once");
-  require_equal(flow.rays, static_cast<std::int64_t>(totals.all_rays()),
-                "the rays made are those of the log");
-  require_equal(flow.rays, sent + sum.made, "rays come from the host or are made by nodes");
-  require_equal(flow.rays, sum.ended, "every ray ends");
-  require_equal(sum.contributions, flow.collected, "every contribution is collected");
-  require_equal(sent + sum.passed_on + sum.contributions, messages,
-                "every message to another node or the host goes through a network");
-  require_equal(sent * config.messages.ray_bytes + sum.bytes_sent, bytes,
-                "the networks carry the bytes that are sent");
+  walk::require_equal(sent, samples_with_rays(log), "every camera ray is sent once");
+  walk::require_equal(flow.rays, static_cast<std::int64_t>(totals.all_rays()),
+                      "the rays made are those of the log");
+  walk::require_equal(flow.rays, sent + sum.made, "rays come from the host or are made by nodes");
+  walk::require_equal(flow.rays, sum.ended, "every ray ends");
+  walk::require_equal(sum.contributions, flow.collected, "every contribution is collected");
+  walk::require_equal(sent + sum.passed_on + sum.contributions, messages,
+                      "every message to another node or the host goes through a network");
+  walk::require_equal(sent * config.messages.ray_bytes + sum.bytes_sent, bytes,
+                      "the networks carry the bytes that are sent");
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

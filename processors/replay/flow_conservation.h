@@ -3,11 +3,12 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// Throws InternalError unless every camera ray was sent once, all rays made have ended, the nodes together
 /// took exactly the steps of the log, every contribution was collected, and every message sent went through a
 /// network.
-void check_flow_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
+void check_flow_conservation(const program::WorkLog& log, const machine::MachineConfig& config,
+                             const MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

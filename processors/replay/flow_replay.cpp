@@ -9,22 +9,22 @@
 #include "processors/walk/record_places.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
-MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options,
-                          std::uint32_t limit, const MakeFlowNodes& make) {
+MachineResult replay_flow(const program::WorkLog& log, const machine::MachineConfig& config,
+                          const ReplayOptions& options, std::uint32_t limit, const MakeFlowNodes& make) {
   if (!options.starts.empty()) {
     throw sim::KeyError("build.sharing", "start states of branches need the image scheme");
   }
-  std::optional<TreePlan> given;
-  const memory::Layout layout = layout_of(log, config, given);
-  const PacketList packets(log.width, log.height, config.packets);
-  const std::vector<std::uint32_t> rank = node_ranks(log, config);
+  std::optional<walk::TreePlan> given;
+  const memory::Layout layout = walk::layout_of(log, config, given);
+  const machine::PacketList packets(log.width, log.height, config.packets);
+  const std::vector<std::uint32_t> rank = walk::node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + config.clusters);
-  FlowHost host(log, packets, config, limit, options.meter);
+  flow::FlowHost host(log, packets, config, limit, options.meter);
   std::vector<std::unique_ptr<memory::Network>> networks;
-  ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
+  walk::ReplayInput input{log, config, layout, packets, rank, options.step_by_step};
   input.observer = options.observer;
   input.causes = options.path;
   sim::ensure(options.path == nullptr || options.observer != nullptr,
@@ -32,16 +32,17 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   if (input.observer != nullptr) {
     input.observer->begin(input);
   }
-  FlowParts parts{input, engine, host, {}};
+  flow::FlowParts parts{input, engine, host, {}};
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     networks.push_back(memory::make_network(config.network, config.nodes));
     parts.networks.push_back(networks.back().get());
   }
-  const std::unique_ptr<FlowNodes> nodes = make(parts);
-  const Interconnects interconnects =
-      connect_memory(config, engine, static_cast<std::uint8_t>(FlowEvent::memory), *nodes, options.path);
-  for (const FlowEvent c : {FlowEvent::step, FlowEvent::reply, FlowEvent::read, FlowEvent::done,
-                            FlowEvent::wake, FlowEvent::admit, FlowEvent::memory}) {
+  const std::unique_ptr<flow::FlowNodes> nodes = make(parts);
+  const Interconnects interconnects = connect_memory(
+      config, engine, static_cast<std::uint8_t>(flow::FlowEvent::memory), *nodes, options.path);
+  for (const flow::FlowEvent c :
+       {flow::FlowEvent::step, flow::FlowEvent::reply, flow::FlowEvent::read, flow::FlowEvent::done,
+        flow::FlowEvent::wake, flow::FlowEvent::admit, flow::FlowEvent::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
@@ -54,9 +55,9 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
   result.host = host.statistics();
   result.packets = packets.size();
-  FlowResult& flow = result.flow;
+  flow::FlowResult& flow = result.flow;
   flow.memory_bytes.assign(config.all_nodes(),
-                           config.placement == Placement::replicated ? layout.database_bytes() : 0);
+                           config.placement == machine::Placement::replicated ? layout.database_bytes() : 0);
   flow.collected = host.collected();
   flow.most_in_flight = host.most_in_flight();
   for (const auto& network : networks) {
@@ -64,7 +65,7 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   }
   nodes->report(flow);
   flow.rays = host.sent();
-  for (const FlowCounts& node : flow.nodes) {
+  for (const flow::FlowCounts& node : flow.nodes) {
     flow.rays += node.made;
   }
   sim::ensure(host.in_flight() == 0, "rays are left over");
@@ -73,4 +74,4 @@ MachineResult replay_flow(const WorkLog& log, const MachineConfig& config, const
   return result;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -6,7 +6,7 @@
 #include "processors/walk/log_cursor.h"
 #include "sim/event_queue.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 namespace {
 
@@ -21,38 +21,40 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 
 }  // namespace
 
-std::uint64_t host_bytes(const MachineConfig& config) {
+std::uint64_t host_bytes(const machine::MachineConfig& config) {
   // A node's counts, while it runs and in the result, and its cursor, event and place in the posting order.
   constexpr std::uint64_t bytes_a_node =
-      2 * sizeof(NodeStatistics) + sizeof(Cursor) + sim::EventQueue::bytes_an_event + 8;
+      2 * sizeof(cost::NodeStatistics) + sizeof(walk::Cursor) + sim::EventQueue::bytes_an_event + 8;
   std::uint64_t tags = 0;
-  if (config.cache.organisation == CacheOrganisation::unified) {
+  if (config.cache.organisation == machine::CacheOrganisation::unified) {
     tags = tag_bytes(config.cache.cache);
-  } else if (config.cache.organisation == CacheOrganisation::split) {
+  } else if (config.cache.organisation == machine::CacheOrganisation::split) {
     for (const std::uint64_t size : config.cache.split_sizes) {
       memory::CacheConfig part = config.cache.cache;
       part.size = size;
       tags += tag_bytes(part);
     }
   }
-  if (config.l2.sharing == SecondLevel::private_caches) {
-    tags += tag_bytes(second_level_cache(config)) + sizeof(memory::CacheCounters);
+  if (config.l2.sharing == machine::SecondLevel::private_caches) {
+    tags += tag_bytes(machine::second_level_cache(config)) + sizeof(memory::CacheCounters);
   }
-  std::uint64_t homes =
-      config.l2.sharing == SecondLevel::shared ? config.clusters * tag_bytes(second_level_cache(config)) : 0;
-  if (config.placement == Placement::distributed) {
+  std::uint64_t homes = config.l2.sharing == machine::SecondLevel::shared
+                            ? config.clusters * tag_bytes(machine::second_level_cache(config))
+                            : 0;
+  if (config.placement == machine::Placement::distributed) {
     constexpr std::uint64_t bytes_a_home = 900;
     constexpr std::uint64_t bytes_a_further_port = 100;
     homes += config.all_nodes() * (bytes_a_home + bytes_a_further_port * (config.ports_of_node() - 1)) +
              config.clusters * memory::network_bytes(config.network, config.nodes);
   }
-  if (config.scheme != Scheme::image) {
+  if (config.scheme != machine::Scheme::image) {
     constexpr std::uint64_t bytes_a_ray = 96;  // including its part of its sample's tree
-    const std::uint32_t queue = config.scheme == Scheme::space ? config.space.queue : config.pipeline.queue;
+    const std::uint32_t queue =
+        config.scheme == machine::Scheme::space ? config.space.queue : config.pipeline.queue;
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
              config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});
   }
-  constexpr std::uint64_t bytes_a_context = sizeof(Cursor) + 64 + sim::EventQueue::bytes_an_event;
+  constexpr std::uint64_t bytes_a_context = sizeof(walk::Cursor) + 64 + sim::EventQueue::bytes_an_event;
   constexpr std::uint64_t bytes_a_port = 80;
   const std::uint64_t contexts =
       config.ports_of_node() == 1 ? 0
@@ -64,4 +66,4 @@ std::uint64_t host_bytes(const MachineConfig& config) {
          config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

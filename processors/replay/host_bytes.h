@@ -5,9 +5,9 @@
 
 #include "processors/machine/machine_config.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// Host bytes that a replay of the machine takes for its nodes and their tags, approximately.
-[[nodiscard]] std::uint64_t host_bytes(const MachineConfig& config);
+[[nodiscard]] std::uint64_t host_bytes(const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

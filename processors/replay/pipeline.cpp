@@ -8,18 +8,20 @@
 #include "processors/replay/flow_replay.h"
 #include "processors/walk/counted_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
-MachineResult replay_pipeline(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+MachineResult replay_pipeline(const program::WorkLog& log, const machine::MachineConfig& config,
+                              const ReplayOptions& options) {
   const std::uint32_t limit =
-      config.pipeline.in_flight != 0 ? config.pipeline.in_flight : most_in_flight(config.pipeline);
-  return replay_flow(log, config, options, limit, [](const FlowParts& parts) {
-    const auto make = [&]<class Caches>(Caches caches) -> std::unique_ptr<FlowNodes> {
-      return std::make_unique<PipelineNodes<Caches>>(parts, std::move(caches));
+      config.pipeline.in_flight != 0 ? config.pipeline.in_flight : machine::most_in_flight(config.pipeline);
+  return replay_flow(log, config, options, limit, [](const flow::FlowParts& parts) {
+    const auto make = [&]<class Caches>(Caches caches) -> std::unique_ptr<flow::FlowNodes> {
+      return std::make_unique<flow::PipelineNodes<Caches>>(parts, std::move(caches));
     };
-    const MachineConfig& machine = parts.input.config;
-    return machine.count.any() ? with_counted_caches(parts.input, make) : with_caches(machine, make);
+    const machine::MachineConfig& machine = parts.input.config;
+    return machine.count.any() ? walk::with_counted_caches(parts.input, make)
+                               : node::with_caches(machine, make);
   });
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -4,10 +4,10 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// replay() for Scheme::pipeline; `config` has been checked.
-[[nodiscard]] MachineResult replay_pipeline(const WorkLog& log, const MachineConfig& config,
+[[nodiscard]] MachineResult replay_pipeline(const program::WorkLog& log, const machine::MachineConfig& config,
                                             const ReplayOptions& options);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -18,38 +18,38 @@
 #include "sim/engine.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 namespace {
 
 // The plan by which the tree is built; std::nullopt when the tree is given.
-std::optional<TreePlan> plan_of(const WorkLog& log, const MachineConfig& config,
-                                const ReplayOptions& options) {
-  if (config.build.sharing == Sharing::given) {
+std::optional<walk::TreePlan> plan_of(const program::WorkLog& log, const machine::MachineConfig& config,
+                                      const ReplayOptions& options) {
+  if (config.build.sharing == machine::Sharing::given) {
     if (!options.starts.empty()) {
       throw sim::UserError("build.sharing: start states of branches need another than \"given\"");
     }
     return std::nullopt;
   }
-  std::vector<BranchStart> starts =
-      options.starts.empty() ? branch_starts(log.topology, config.build) : options.starts;
-  check_starts(log.topology, starts);
-  TreePlan plan(log.topology, std::move(starts), config);
-  if (config.build.sharing == Sharing::none && !plan.lazy().empty()) {
+  std::vector<walk::BranchStart> starts =
+      options.starts.empty() ? walk::branch_starts(log.topology, config.build) : options.starts;
+  walk::check_starts(log.topology, starts);
+  walk::TreePlan plan(log.topology, std::move(starts), config);
+  if (config.build.sharing == machine::Sharing::none && !plan.lazy().empty()) {
     throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
   }
   return plan;
 }
 
 // Decides what the replay leaves out, and sets `input` accordingly.
-LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
-  LeftOut left;
+walk::LeftOut leave_out(const ReplayOptions& options, walk::ReplayInput& input) {
+  walk::LeftOut left;
   if (options.step_by_step || options.with_contexts) {
     return left;
   }
-  const MachineConfig& config = input.config;
-  if (!options.keep_lookups && why_lookups(config, input.layout) == nullptr) {
-    input.line_set = lines_of(input.layout, config.cache.cache.line);
+  const machine::MachineConfig& config = input.config;
+  if (!options.keep_lookups && walk::why_lookups(config, input.layout) == nullptr) {
+    input.line_set = walk::lines_of(input.layout, config.cache.cache.line);
     left.lookups = true;
     left.tag_bytes =
         memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
@@ -57,20 +57,21 @@ LeftOut leave_out(const ReplayOptions& options, ReplayInput& input) {
   }
   // Observers need every read. Replays with a sample need the events.
   const bool plain = options.observer == nullptr && options.sample == nullptr;
-  if (!options.keep_read_events && plain && why_read_events(config) == nullptr) {
+  if (!options.keep_read_events && plain && walk::why_read_events(config) == nullptr) {
     input.own_reads = memory::ideal_read(config.interconnect);
     left.read_events = true;
   }
   return left;
 }
 
-std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const PacketSample* sample) {
+std::uint64_t pixels_of(const machine::PacketList& packets, const program::WorkLog& log,
+                        const walk::PacketSample* sample) {
   if (sample == nullptr) {
     return std::uint64_t{log.width} * log.height;
   }
   std::uint64_t pixels = 0;
   for (std::uint64_t i = 0; i < packets.size(); ++i) {
-    const Packet packet = packets[i];
+    const machine::Packet packet = packets[i];
     pixels += std::uint64_t{packet.x1 - packet.x0} * (packet.y1 - packet.y0);
   }
   return pixels;
@@ -78,26 +79,26 @@ std::uint64_t pixels_of(const PacketList& packets, const WorkLog& log, const Pac
 
 }  // namespace
 
-StepCounts MachineResult::steps() const {
-  StepCounts sum;
-  for (const NodeStatistics& node : nodes) {
+cost::StepCounts MachineResult::steps() const {
+  cost::StepCounts sum;
+  for (const cost::NodeStatistics& node : nodes) {
     sim::merge(sum, node.steps);
   }
   return sum;
 }
 
-ReferenceCounts MachineResult::references() const {
-  ReferenceCounts sum;
-  for (const NodeStatistics& node : nodes) {
+cost::ReferenceCounts MachineResult::references() const {
+  cost::ReferenceCounts sum;
+  for (const cost::NodeStatistics& node : nodes) {
     sum += node.references;
   }
   return sum;
 }
 
-TimeDivision MachineResult::time() const {
-  TimeDivision sum{};
-  for (const NodeStatistics& node : nodes) {
-    for (std::size_t i = 0; i < activities; ++i) {
+cost::TimeDivision MachineResult::time() const {
+  cost::TimeDivision sum{};
+  for (const cost::NodeStatistics& node : nodes) {
+    for (std::size_t i = 0; i < cost::activities; ++i) {
       sum[i] = sim::add_ticks(sum[i], node.time[i]);
     }
   }
@@ -106,31 +107,32 @@ TimeDivision MachineResult::time() const {
 
 namespace {
 
-MachineResult replay_image(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
-  std::optional<TreePlan> plan = plan_of(log, config, options);
-  const memory::Layout layout = layout_of(log, config, plan);
-  const PacketList all_packets(log.width, log.height, config.packets);
-  const PacketList packets =
+MachineResult replay_image(const program::WorkLog& log, const machine::MachineConfig& config,
+                           const ReplayOptions& options) {
+  std::optional<walk::TreePlan> plan = plan_of(log, config, options);
+  const memory::Layout layout = walk::layout_of(log, config, plan);
+  const machine::PacketList all_packets(log.width, log.height, config.packets);
+  const machine::PacketList packets =
       options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
-  const std::vector<std::uint32_t> rank = node_ranks(log, config);
+  const std::vector<std::uint32_t> rank = walk::node_ranks(log, config);
   sim::Engine engine;
   engine.reserve_for(std::size_t{config.all_nodes()} * config.contexts);
-  Host host(config.host, packets.size(), config.all_nodes(), options.meter);
-  ReplayInput input = {log,
-                       config,
-                       layout,
-                       packets,
-                       rank,
-                       options.step_by_step,
-                       plan ? &*plan : nullptr,
-                       options.report_built,
-                       options.observer,
-                       options.stripped,
-                       options.with_contexts,
-                       options.sample,
-                       &all_packets};
+  node::Host host(config.host, packets.size(), config.all_nodes(), options.meter);
+  walk::ReplayInput input = {log,
+                             config,
+                             layout,
+                             packets,
+                             rank,
+                             options.step_by_step,
+                             plan ? &*plan : nullptr,
+                             options.report_built,
+                             options.observer,
+                             options.stripped,
+                             options.with_contexts,
+                             options.sample,
+                             &all_packets};
   input.causes = options.path;
-  const LeftOut left_out = leave_out(options, input);
+  const walk::LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&
                     options.stripped->suits(config),
@@ -141,11 +143,12 @@ MachineResult replay_image(const WorkLog& log, const MachineConfig& config, cons
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
-  const std::unique_ptr<NodeArray> nodes = make_node_array(input, engine, host);
-  const Interconnects interconnects =
-      connect_memory(config, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes, options.path);
-  for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
-                             EventClass::write, EventClass::memory}) {
+  const std::unique_ptr<node::NodeArray> nodes = node::make_node_array(input, engine, host);
+  const Interconnects interconnects = connect_memory(
+      config, engine, static_cast<std::uint8_t>(node::EventClass::memory), *nodes, options.path);
+  for (const node::EventClass c :
+       {node::EventClass::step, node::EventClass::dispatch, node::EventClass::reply, node::EventClass::read,
+        node::EventClass::write, node::EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
   nodes->start(options.start_seed);
@@ -172,13 +175,14 @@ MachineResult replay_image(const WorkLog& log, const MachineConfig& config, cons
   return result;
 }
 
-MachineResult replay_scheme(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+MachineResult replay_scheme(const program::WorkLog& log, const machine::MachineConfig& config,
+                            const ReplayOptions& options) {
   switch (config.scheme) {
-    case Scheme::image:
+    case machine::Scheme::image:
       break;
-    case Scheme::pipeline:
+    case machine::Scheme::pipeline:
       return replay_pipeline(log, config, options);
-    case Scheme::space:
+    case machine::Scheme::space:
       return replay_space(log, config, options);
   }
   return replay_image(log, config, options);
@@ -186,18 +190,19 @@ MachineResult replay_scheme(const WorkLog& log, const MachineConfig& config, con
 
 }  // namespace
 
-MachineResult replay(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
-  check(config);
-  check_prefetch(config.prefetch, log.traversal);
-  check_energy(config);
+MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& config,
+                     const ReplayOptions& options) {
+  machine::check(config);
+  machine::check_prefetch(config.prefetch, log.traversal);
+  energy::check_energy(config);
   if (options.sample != nullptr) {
     check_sampled(config);
   }
   MachineResult result = replay_scheme(log, config, options);
   if (config.energy.on()) {
-    result.energy = energy_of(config, energy_counts(log, config, result));
+    result.energy = energy::energy_of(config, energy_counts(log, config, result));
   }
   return result;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -22,11 +22,15 @@
 #include "processors/walk/second_level.h"
 #include "sim/work_meter.h"
 
-namespace marti::processors {
-
-class Observer;
+namespace marti::processors::path {
 class PathRecorder;
+}  // namespace marti::processors::path
+namespace marti::processors::walk {
+class Observer;
 class StrippedLog;
+}  // namespace marti::processors::walk
+
+namespace marti::processors::replay {
 
 /// What a cluster's distributed memory counted in addition to the counts of every interconnect.
 struct DistributedResult {
@@ -46,28 +50,28 @@ struct ClusterResult {
 /// A timed frame. All figures are integers; ratios are computed where they are printed.
 struct MachineResult {
   sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
-  std::vector<NodeStatistics> nodes;
+  std::vector<cost::NodeStatistics> nodes;
   std::vector<ClusterResult> clusters;
-  HostStatistics host;
-  BuildResult build;                          ///< empty when the tree is given
-  FlowResult flow;                            ///< empty with the image scheme
-  ContextResult contexts;                     ///< empty with one context and no prefetch
-  SecondLevelResult l2;                       ///< empty without a second level
-  CacheCountResult counts;                    ///< the counts that MachineConfig::count asks for
-  std::uint64_t packets = 0;                  ///< number handed out
-  std::uint64_t pixels = 0;                   ///< image scheme: number of pixels in these packets
-  std::vector<PacketFigures> packet_figures;  ///< with a sample: of its packets, in order; else empty
-  std::uint64_t database_bytes = 0;           ///< of one copy, when the frame begins
-  std::uint64_t copies = 0;                   ///< one for each cluster, or for each node when replicated
+  node::HostStatistics host;
+  node::BuildResult build;                          ///< empty when the tree is given
+  flow::FlowResult flow;                            ///< empty with the image scheme
+  walk::ContextResult contexts;                     ///< empty with one context and no prefetch
+  walk::SecondLevelResult l2;                       ///< empty without a second level
+  walk::CacheCountResult counts;                    ///< the counts that MachineConfig::count asks for
+  std::uint64_t packets = 0;                        ///< number handed out
+  std::uint64_t pixels = 0;                         ///< image scheme: number of pixels in these packets
+  std::vector<walk::PacketFigures> packet_figures;  ///< with a sample: of its packets, in order; else empty
+  std::uint64_t database_bytes = 0;                 ///< of one copy, when the frame begins
+  std::uint64_t copies = 0;  ///< one for each cluster, or for each node when replicated
   std::uint64_t events = 0;
-  std::optional<EnergyResult> energy;  ///< where MachineConfig::energy is on
-  LeftOut left_out;
+  std::optional<energy::EnergyResult> energy;  ///< where MachineConfig::energy is on
+  walk::LeftOut left_out;
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction
 
-  [[nodiscard]] StepCounts steps() const;
-  [[nodiscard]] ReferenceCounts references() const;
-  [[nodiscard]] TimeDivision time() const;
+  [[nodiscard]] cost::StepCounts steps() const;
+  [[nodiscard]] cost::ReferenceCounts references() const;
+  [[nodiscard]] cost::TimeDivision time() const;
 };
 
 struct ReplayOptions {
@@ -76,12 +80,12 @@ struct ReplayOptions {
   /// The state of each branch when the frame begins, one entry a tree node, instead of what
   /// MachineConfig::build says; its `sharing` must not be `given`, and with `none` no branch may be lazy.
   /// Empty: as it says.
-  std::vector<BranchStart> starts{};
-  bool report_built = false;     ///< fill BuildResult::built, unless the tree is given
-  Observer* observer = nullptr;  ///< see processors/walk/observer.h; same result
+  std::vector<walk::BranchStart> starts{};
+  bool report_built = false;           ///< fill BuildResult::built, unless the tree is given
+  walk::Observer* observer = nullptr;  ///< see processors/walk/observer.h; same result
   /// Walked in place of `log`, from which it was made for a machine of the same key_of and ways_of; same
   /// result.
-  const StrippedLog* stripped = nullptr;
+  const walk::StrippedLog* stripped = nullptr;
   /// Look up tags, and post an event for each read, even where left_out.h says that the outcome is known;
   /// same result except for `events` and `left_out`.
   bool keep_lookups = false;
@@ -89,12 +93,12 @@ struct ReplayOptions {
   /// Only these packets are handed out; the result is that of a frame which has no others. For the image
   /// scheme with a given tree, dynamic assignment, one context, and no second level of caches or counting of
   /// more than hits and misses (check_sampled).
-  const PacketSample* sample = nullptr;
+  const walk::PacketSample* sample = nullptr;
   bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
   /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
   /// `stripped` or `sample`.
-  PathRecorder* path = nullptr;
+  path::PathRecorder* path = nullptr;
   /// Counts each packet that is handed out; after its stop() the replay throws sim::Stopped at the next one.
   /// Null: nobody waits. Same result.
   sim::WorkMeter* meter = nullptr;
@@ -103,16 +107,17 @@ struct ReplayOptions {
 /// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
 /// returns it checks the conservation laws of the result and throws InternalError when one is broken.
 /// Throws UserError for a machine that cannot be built or a time that does not fit.
-[[nodiscard]] MachineResult replay(const WorkLog& log, const MachineConfig& config,
+[[nodiscard]] MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& config,
                                    const ReplayOptions& options = {});
 
 /// Throws UserError with the reason when some of the machine's packets cannot be replayed without the others.
-void check_sampled(const MachineConfig& config);
+void check_sampled(const machine::MachineConfig& config);
 
 /// The conservation laws that every result must obey. Each node's time adds up to the end. Every pixel is
 /// written once; where rays move, every ray of the log is made, traced and ended once and every message
 /// arrives. The nodes' waits are those that the interconnect and the banks caused. The counts of what was
 /// built agree with the trees that exist.
-void check_conservation(const WorkLog& log, const MachineConfig& config, const MachineResult& result);
+void check_conservation(const program::WorkLog& log, const machine::MachineConfig& config,
+                        const MachineResult& result);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -3,21 +3,21 @@
 #include "processors/node/memory_system.h"
 #include "processors/path/watched_memory.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
-Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, std::uint8_t memory_class,
-                             NodeArray& nodes, PathRecorder* path) {
+Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& engine,
+                             std::uint8_t memory_class, node::NodeArray& nodes, path::PathRecorder* path) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
   const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
     const memory::InterconnectSite site = {
-        engine, nodes.client(cluster), static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+        engine, nodes.client(cluster), static_cast<std::uint8_t>(node::EventClass::reply), cluster * ports,
         ports,  memory_class};
     if (path != nullptr) {
-      interconnects.push_back(std::make_unique<WatchedMemory>(config, site, *path));
+      interconnects.push_back(std::make_unique<path::WatchedMemory>(config, site, *path));
     } else {
-      interconnects.push_back(make_memory_system(config, site));
+      interconnects.push_back(node::make_memory_system(config, site));
     }
     links.push_back(interconnects.back().get());
   }
@@ -25,8 +25,9 @@ Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine, s
   return interconnects;
 }
 
-MachineResult common_result(const MachineConfig& config, const sim::Engine& engine, const NodeArray& nodes,
-                            const Interconnects& interconnects, const memory::Layout& layout) {
+MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,
+                            const node::NodeArray& nodes, const Interconnects& interconnects,
+                            const memory::Layout& layout) {
   MachineResult result;
   result.end = nodes.end();
   result.nodes = nodes.statistics();
@@ -41,18 +42,18 @@ MachineResult common_result(const MachineConfig& config, const sim::Engine& engi
       result.l2.waits.push_back(cache->waits);
     }
   }
-  if (config.l2.sharing == SecondLevel::private_caches) {
+  if (config.l2.sharing == machine::SecondLevel::private_caches) {
     result.l2 = nodes.second_level();
   }
   result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
   result.contexts = nodes.context_result();
   result.database_bytes = layout.database_bytes();
-  result.copies = config.placement == Placement::replicated ? config.all_nodes() : config.clusters;
+  result.copies = config.placement == machine::Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();
   result.host_bytes_per_node = nodes.bytes_per_node();
   result.unloaded_miss = interconnects.front()->unloaded_read(config.reference_bytes());
   return result;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

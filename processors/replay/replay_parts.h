@@ -11,20 +11,20 @@
 #include "processors/replay/replay.h"
 #include "sim/engine.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// Each cluster's shared memory.
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 
 /// Builds the memory systems of all clusters and connects the nodes to them. `memory_class` is the class of
 /// the memory systems' own events. `path`: null, or what watches the memory systems.
-[[nodiscard]] Interconnects connect_memory(const MachineConfig& config, sim::Engine& engine,
-                                           std::uint8_t memory_class, NodeArray& nodes,
-                                           PathRecorder* path = nullptr);
+[[nodiscard]] Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& engine,
+                                           std::uint8_t memory_class, node::NodeArray& nodes,
+                                           path::PathRecorder* path = nullptr);
 
 /// The part of the result that all schemes have: nodes after NodeArray::finish(), memory, database.
-[[nodiscard]] MachineResult common_result(const MachineConfig& config, const sim::Engine& engine,
-                                          const NodeArray& nodes, const Interconnects& interconnects,
+[[nodiscard]] MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,
+                                          const node::NodeArray& nodes, const Interconnects& interconnects,
                                           const memory::Layout& layout);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

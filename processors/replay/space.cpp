@@ -8,9 +8,9 @@
 #include "processors/replay/flow_replay.h"
 #include "processors/walk/counted_caches.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
-std::uint32_t admission_limit(const MachineConfig& config) {
+std::uint32_t admission_limit(const machine::MachineConfig& config) {
   if (config.space.in_flight != 0) {
     return config.space.in_flight;
   }
@@ -19,23 +19,24 @@ std::uint32_t admission_limit(const MachineConfig& config) {
       std::clamp<std::uint64_t>(half, 1, std::numeric_limits<std::uint32_t>::max() / 2));
 }
 
-MachineResult replay_space(const WorkLog& log, const MachineConfig& config, const ReplayOptions& options) {
+MachineResult replay_space(const program::WorkLog& log, const machine::MachineConfig& config,
+                           const ReplayOptions& options) {
   // Each node reads its own memory, as with a replicated database.
-  MachineConfig own_memories = config;
-  own_memories.placement = Placement::replicated;
+  machine::MachineConfig own_memories = config;
+  own_memories.placement = machine::Placement::replicated;
   own_memories.interconnect.kind = memory::InterconnectKind::ideal;  // no interconnect is used
-  SpacePlan plan;
-  const auto make = [&](const FlowParts& parts) {
-    plan = plan_space(log, own_memories, parts.input.layout);
-    const auto make_nodes = [&]<class Caches>(Caches caches) -> std::unique_ptr<FlowNodes> {
-      return std::make_unique<SpaceNodes<Caches>>(parts, plan, std::move(caches));
+  flow::SpacePlan plan;
+  const auto make = [&](const flow::FlowParts& parts) {
+    plan = flow::plan_space(log, own_memories, parts.input.layout);
+    const auto make_nodes = [&]<class Caches>(Caches caches) -> std::unique_ptr<flow::FlowNodes> {
+      return std::make_unique<flow::SpaceNodes<Caches>>(parts, plan, std::move(caches));
     };
-    return own_memories.count.any() ? with_counted_caches(parts.input, make_nodes)
-                                    : with_caches(own_memories, make_nodes);
+    return own_memories.count.any() ? walk::with_counted_caches(parts.input, make_nodes)
+                                    : node::with_caches(own_memories, make_nodes);
   };
   MachineResult result = replay_flow(log, own_memories, options, admission_limit(config), make);
   result.copies = config.clusters;
   return result;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

@@ -14,15 +14,15 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::processors {
+namespace marti::processors::replay {
 
 /// Times `config`, whose scheme is space, on `log`. A node reads its part through its cache, if it has one,
 /// from memory of its own (MachineConfig::local); MachineConfig::placement (which must not be distributed),
 /// interconnect and banks have no effect. Deterministic; throws as replay() does.
-[[nodiscard]] MachineResult replay_space(const WorkLog& log, const MachineConfig& config,
+[[nodiscard]] MachineResult replay_space(const program::WorkLog& log, const machine::MachineConfig& config,
                                          const ReplayOptions& options = {});
 
 /// The host sends a camera ray into a cluster only while fewer than this many rays are in flight there.
-[[nodiscard]] std::uint32_t admission_limit(const MachineConfig& config);
+[[nodiscard]] std::uint32_t admission_limit(const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::replay

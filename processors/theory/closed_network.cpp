@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace marti::processors {
+namespace marti::processors::theory {
 
 double ClosedNetwork::demand() const { return std::accumulate(demands.begin(), demands.end(), 0.0); }
 
@@ -111,4 +111,4 @@ double repairman_utilisation(std::uint64_t customers, double think, double servi
   return utilisation;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::theory

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace marti::processors {
+namespace marti::processors::theory {
 
 /// Times may have any unit; throughputs are in cycles of one customer per that unit.
 struct ClosedNetwork {
@@ -53,4 +53,4 @@ struct MeanValues {
 /// share of time in which somebody is served. By the recursion of Erlang's formula, of positive terms only.
 [[nodiscard]] double repairman_utilisation(std::uint64_t customers, double think, double service);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::theory

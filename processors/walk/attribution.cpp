@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 AttributionCounts& Attribution::at(memory::RecordKind record, Origin origin) {
   const std::size_t level = std::min<std::uint32_t>(origin.level, levels - 1);
@@ -32,10 +32,11 @@ std::vector<AttributionRow> Attribution::rows() const {
     const std::size_t work = place / levels;
     const std::size_t ray = work / 2;
     rows.push_back({static_cast<memory::RecordKind>(cell % memory::record_kinds),
-                    static_cast<std::uint32_t>(place % levels), ray_kind_of(static_cast<std::uint32_t>(ray)),
-                    bounce_of(static_cast<std::uint32_t>(ray)), work % 2 == 1, cells_[cell]});
+                    static_cast<std::uint32_t>(place % levels),
+                    program::ray_kind_of(static_cast<std::uint32_t>(ray)),
+                    program::bounce_of(static_cast<std::uint32_t>(ray)), work % 2 == 1, cells_[cell]});
   }
   return rows;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -11,7 +11,7 @@
 #include "processors/program/work_log.h"
 #include "sim/statistics.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Whether records of this kind are read for a node of the tree.
 [[nodiscard]] constexpr bool of_tree(memory::RecordKind kind) {
@@ -31,9 +31,9 @@ struct Origin {
   bool splitting = false;
 
   void begin_ray(std::uint32_t operand) {
-    const std::uint32_t bounce = bounce_of(operand);
+    const std::uint32_t bounce = program::bounce_of(operand);
     ray = static_cast<std::uint16_t>(
-        ray_operand(ray_kind_of(operand), bounce < most_bounces ? bounce : most_bounces));
+        program::ray_operand(program::ray_kind_of(operand), bounce < most_bounces ? bounce : most_bounces));
   }
 };
 
@@ -67,7 +67,7 @@ static_assert(sim::declares_every_member<AttributionCounts>());
 struct AttributionRow {
   memory::RecordKind record = memory::RecordKind::node;
   std::uint32_t level = 0;
-  RayKind ray = RayKind::camera;
+  program::RayKind ray = program::RayKind::camera;
   std::uint32_t bounce = 0;
   bool splitting = false;
   AttributionCounts counts;
@@ -87,4 +87,4 @@ class Attribution {
   std::vector<AttributionCounts> cells_;  // by origin's ray, work, level and record
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -10,7 +10,7 @@
 #include "processors/walk/replay_input.h"
 #include "processors/walk/second_level.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 class BehindCache {
  public:
@@ -18,7 +18,7 @@ class BehindCache {
       : local_(input.config.local),
         second_level_(input.config),
         own_read_(input.own_reads),
-        reads_alone_(input.own_reads || input.config.placement == Placement::replicated),
+        reads_alone_(input.own_reads || input.config.placement == machine::Placement::replicated),
         nodes_(input.config.nodes),
         own_read_bytes_(input.own_reads ? input.config.clusters : 0) {}
 
@@ -30,7 +30,8 @@ class BehindCache {
 
   /// Looks a miss up in the node's second level, if it has one. A hit's time is added to `time` and
   /// `division`.
-  bool second_level_holds(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
+  bool second_level_holds(std::uint32_t node, std::uint32_t line, sim::Ticks& time,
+                          cost::TimeDivision& division) {
     return second_level_.access(node, line, time, division);
   }
 
@@ -40,14 +41,14 @@ class BehindCache {
   }
 
   /// A read without the interconnect, from `time` on, which is set to its end.
-  memory::Service read(std::uint32_t bytes, sim::Ticks& time, TimeDivision& division) {
+  memory::Service read(std::uint32_t bytes, sim::Ticks& time, cost::TimeDivision& division) {
     const memory::Service service =
         own_read_ ? memory::Service{sim::add_ticks(time, *own_read_), 0, *own_read_, 0, 0}
                   : local_.read(bytes, time);
     if (own_read_) {
       read_bytes_ += bytes;
     }
-    add_service(division, service);
+    cost::add_service(division, service);
     time = service.done;
     return service;
   }
@@ -71,4 +72,4 @@ class BehindCache {
   std::int64_t read_bytes_ = 0;               // over the ideal interconnect, since count_bytes()
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -5,7 +5,7 @@
 
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
@@ -19,24 +19,24 @@ void refuse_without_work(const accel::Topology& topology) {
 
 }  // namespace
 
-std::uint32_t initial_level(const accel::Topology& topology, const BuildConfig& config) {
+std::uint32_t initial_level(const accel::Topology& topology, const machine::BuildConfig& config) {
   std::uint32_t deepest = 0;
   for (const accel::TopologyNode& node : topology.nodes) {
     deepest = std::max<std::uint32_t>(deepest, node.level);
   }
   const std::uint32_t all = deepest + 1;
-  if (config.sharing == Sharing::given || config.sharing == Sharing::none) {
+  if (config.sharing == machine::Sharing::given || config.sharing == machine::Sharing::none) {
     return all;
   }
   switch (config.initial) {
-    case InitialTree::full:
+    case machine::InitialTree::full:
       return all;
-    case InitialTree::level:
+    case machine::InitialTree::level:
       if (config.level == 0) {
         throw sim::KeyError("build.initial_level", "the root is level 1");
       }
       return std::min(config.level, all);
-    case InitialTree::rule:
+    case machine::InitialTree::rule:
       break;
   }
   if (!(config.rule_k >= 0.0)) {
@@ -55,9 +55,9 @@ std::uint32_t initial_level(const accel::Topology& topology, const BuildConfig& 
   return all;
 }
 
-std::vector<BranchStart> branch_starts(const accel::Topology& topology, const BuildConfig& config) {
+std::vector<BranchStart> branch_starts(const accel::Topology& topology, const machine::BuildConfig& config) {
   std::vector<BranchStart> starts(topology.nodes.size(), BranchStart::kept);
-  if (config.sharing == Sharing::given) {
+  if (config.sharing == machine::Sharing::given) {
     return starts;
   }
   refuse_without_work(topology);
@@ -93,4 +93,4 @@ void check_starts(const accel::Topology& topology, const std::vector<BranchStart
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

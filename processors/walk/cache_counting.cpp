@@ -7,16 +7,16 @@
 #include "sim/key_error.h"
 #include "sim/units.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
 // The number of lines of each private first-level cache of a node.
-std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
+std::vector<std::uint64_t> lines_of_caches(const machine::MachineConfig& config) {
   std::vector<std::uint64_t> lines;
-  if (config.cache.organisation == CacheOrganisation::unified) {
+  if (config.cache.organisation == machine::CacheOrganisation::unified) {
     lines.push_back(config.cache.cache.size / config.cache.cache.line);
-  } else if (config.cache.organisation == CacheOrganisation::split) {
+  } else if (config.cache.organisation == machine::CacheOrganisation::split) {
     for (const std::uint64_t size : config.cache.split_sizes) {
       lines.push_back(size / config.cache.cache.line);
     }
@@ -26,7 +26,7 @@ std::vector<std::uint64_t> lines_of_caches(const MachineConfig& config) {
 
 }  // namespace
 
-CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
+CacheCounting::CacheCounting(const machine::MachineConfig& config, std::uint64_t lines) {
   const std::vector<std::uint64_t> caches = lines_of_caches(config);
   // A bit for each line and node for each count that is kept, and a hashed line of a fully associative cache.
   std::uint64_t bytes = config.count.sharing ? lines / 8 : 0;
@@ -36,7 +36,7 @@ CacheCounting::CacheCounting(const MachineConfig& config, std::uint64_t lines) {
     }
   }
   if (bytes > most_bytes / config.all_nodes()) {
-    throw sim::KeyError(std::string(key_of(config.count)),
+    throw sim::KeyError(std::string(machine::key_of(config.count)),
                         "[count] would take more than " +
                             sim::print_size(static_cast<std::int64_t>(most_bytes)) +
                             " for so many nodes and so large a database; count on a smaller machine");
@@ -120,8 +120,8 @@ CacheCountResult CacheCounting::result() const {
   return result;
 }
 
-void check_counts(const CacheCountResult& counts, const ReferenceCounts& references, std::int64_t prefetches,
-                  const TimeDivision& time) {
+void check_counts(const CacheCountResult& counts, const cost::ReferenceCounts& references,
+                  std::int64_t prefetches, const cost::TimeDivision& time) {
   if (counts.miss_classes) {
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
       std::int64_t misses = 0;
@@ -137,7 +137,7 @@ void check_counts(const CacheCountResult& counts, const ReferenceCounts& referen
         "every miss and every prefetch fetches a line, one of the node's own or one that others may have");
   }
   if (counts.attribution) {
-    ReferenceCounts sum;
+    cost::ReferenceCounts sum;
     AttributionCounts all;
     for (const AttributionRow& row : *counts.attribution) {
       const auto kind = static_cast<std::size_t>(row.record);
@@ -147,12 +147,13 @@ void check_counts(const CacheCountResult& counts, const ReferenceCounts& referen
     }
     require(sum.hits == references.hits && sum.misses == references.misses,
             "the references attributed are those of the nodes, kind by kind");
-    const auto part = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
-    require(all.interconnect_wait == part(Activity::interconnect_wait) &&
-                all.transfer == part(Activity::transfer) && all.bank_wait == part(Activity::bank_wait) &&
-                all.bank_access == part(Activity::bank_access),
+    const auto part = [&](cost::Activity activity) { return time[static_cast<std::size_t>(activity)]; };
+    require(all.interconnect_wait == part(cost::Activity::interconnect_wait) &&
+                all.transfer == part(cost::Activity::transfer) &&
+                all.bank_wait == part(cost::Activity::bank_wait) &&
+                all.bank_access == part(cost::Activity::bank_access),
             "the waits attributed are those of the nodes");
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

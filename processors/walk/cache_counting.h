@@ -12,7 +12,7 @@
 #include "processors/machine/machine_config.h"
 #include "processors/walk/attribution.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The counts that were asked for; the others have no value.
 struct CacheCountResult {
@@ -28,7 +28,7 @@ class CacheCounting {
  public:
   /// `lines` is one past the last line of memory. Throws UserError when the counting may take more than
   /// `most_bytes` of the host's memory.
-  CacheCounting(const MachineConfig& config, std::uint64_t lines);
+  CacheCounting(const machine::MachineConfig& config, std::uint64_t lines);
 
   /// Counts a reference of a node to a line of its cache number `cache` (0 unless the caches are split).
   /// `own`: no other node has this line, not even a copy, so it is no case of sharing.
@@ -57,7 +57,7 @@ class CacheCounting {
 
 /// Throws InternalError unless the counts add up to those of the nodes, which have asked for `prefetches`
 /// lines beside their misses.
-void check_counts(const CacheCountResult& counts, const ReferenceCounts& references, std::int64_t prefetches,
-                  const TimeDivision& time);
+void check_counts(const CacheCountResult& counts, const cost::ReferenceCounts& references,
+                  std::int64_t prefetches, const cost::TimeDivision& time);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

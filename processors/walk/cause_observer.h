@@ -6,7 +6,7 @@
 #include "processors/cost/accounting.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// How far a node has come in the log: so many words of a pixel's have been taken. The step that they end
 /// with is the one that the node is at.
@@ -36,7 +36,7 @@ class CauseObserver {
 
   /// The node has worked until it needs something shared, perhaps for no time. Called before
   /// Observer::spent for that work. `statistics`: all that it has counted so far.
-  virtual void worked(std::uint32_t node, const NodeStatistics& statistics, LogPlace place) = 0;
+  virtual void worked(std::uint32_t node, const cost::NodeStatistics& statistics, LogPlace place) = 0;
 
   // By the image scheme.
 
@@ -71,4 +71,4 @@ class CauseObserver {
   virtual void let_go(std::uint32_t waiter, std::uint32_t by, sim::Ticks now) = 0;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

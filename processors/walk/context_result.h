@@ -7,7 +7,7 @@
 
 #include "sim/statistics.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// What one processor node counted. issued = useful + useless.
 struct ContextCounts {
@@ -46,4 +46,4 @@ struct ContextResult {
   }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

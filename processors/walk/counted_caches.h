@@ -8,7 +8,7 @@
 #include "processors/walk/node_caches.h"
 #include "processors/walk/replay_input.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// `Present` is false for nodes without a cache.
 template <bool Present>
@@ -84,8 +84,9 @@ class CountedCaches {
 /// Returns make(caches) with the caches of a machine that counts.
 template <class Make>
 auto with_counted_caches(const ReplayInput& input, const Make& make) {
-  return input.config.cache.organisation == CacheOrganisation::none ? make(CountedCaches<false>(input))
-                                                                    : make(CountedCaches<true>(input));
+  return input.config.cache.organisation == machine::CacheOrganisation::none
+             ? make(CountedCaches<false>(input))
+             : make(CountedCaches<true>(input));
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -17,7 +17,7 @@
 #include "processors/walk/node_caches.h"
 #include "processors/walk/prefetch_lines.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Base classes that mark caches which count, and others: only the former have the member `counted`.
 struct CountedMark {
@@ -36,7 +36,7 @@ class GuardedCaches : public std::conditional_t<are_counted<Caches>, CountedMark
   GuardedCaches(const ReplayInput& input, Caches caches)
       : caches_(std::move(caches)),
         prefetch_(input.config.prefetch),
-        second_level_(input.config.l2.sharing == SecondLevel::private_caches),
+        second_level_(input.config.l2.sharing == machine::SecondLevel::private_caches),
         targets_(input, input.config.cache.cache.line),
         lines_(present ? input.config.all_nodes() : 0),
         counts_(input.config.all_nodes()) {}
@@ -138,11 +138,11 @@ class GuardedCaches : public std::conditional_t<are_counted<Caches>, CountedMark
 
  private:
   Caches caches_;
-  PrefetchConfig prefetch_;
+  machine::PrefetchConfig prefetch_;
   bool second_level_;  // each node has one of its own
   PrefetchLines targets_;
   std::vector<LinesUnderWay> lines_;
   std::vector<ContextCounts> counts_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

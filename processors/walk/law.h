@@ -7,7 +7,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Throws InternalError, naming the law, unless it holds.
 inline void require(bool holds, std::string_view law) {
@@ -24,4 +24,4 @@ inline void require_equal(std::int64_t left, std::int64_t right, std::string_vie
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

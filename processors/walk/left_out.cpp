@@ -4,16 +4,16 @@
 
 #include "memory/line_set.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
 // Why the nodes of this machine are walked by code that cannot leave anything out; null when they are not.
-const char* why_other_nodes(const MachineConfig& config) {
-  if (config.scheme != Scheme::image) {
+const char* why_other_nodes(const machine::MachineConfig& config) {
+  if (config.scheme != machine::Scheme::image) {
     return "rays move between nodes";
   }
-  if (config.build.sharing != Sharing::given) {
+  if (config.build.sharing != machine::Sharing::given) {
     return "the tree is built during the frame";
   }
   if (config.contexts > 1 || config.prefetch.on()) {
@@ -38,14 +38,14 @@ std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes) {
   return (end + line_bytes - 1) / line_bytes;
 }
 
-const char* why_lookups(const MachineConfig& config, const memory::Layout& layout) {
+const char* why_lookups(const machine::MachineConfig& config, const memory::Layout& layout) {
   if (const char* why = why_other_nodes(config)) {
     return why;
   }
-  if (config.cache.organisation == CacheOrganisation::none) {
+  if (config.cache.organisation == machine::CacheOrganisation::none) {
     return "there is no cache";
   }
-  if (config.cache.organisation == CacheOrganisation::split) {
+  if (config.cache.organisation == machine::CacheOrganisation::split) {
     return "each of the split caches sees a part of the lines only";
   }
   const memory::CacheShape shape = memory::shape_of(config.cache.cache);
@@ -54,14 +54,14 @@ const char* why_lookups(const MachineConfig& config, const memory::Layout& layou
              : "the database is larger than the cache or than the ways of a set";
 }
 
-const char* why_read_events(const MachineConfig& config) {
+const char* why_read_events(const machine::MachineConfig& config) {
   if (const char* why = why_other_nodes(config)) {
     return why;
   }
-  if (config.placement != Placement::shared) {
+  if (config.placement != machine::Placement::shared) {
     return "the database is not in a shared memory";
   }
-  if (config.l2.sharing != SecondLevel::none) {
+  if (config.l2.sharing != machine::SecondLevel::none) {
     return "there is a second level of caches";
   }
   return config.interconnect.kind == memory::InterconnectKind::ideal
@@ -69,4 +69,4 @@ const char* why_read_events(const MachineConfig& config) {
              : "reads and posted writes may wait for each other";
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -13,7 +13,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// What of a replay was left out.
 struct LeftOut {
@@ -30,9 +30,9 @@ struct LeftOut {
 
 /// Why tags must be looked up on this machine; null when they need not. Only nodes of the image scheme with
 /// one context, a given tree and a unified cache, without detailed counts, can do without.
-[[nodiscard]] const char* why_lookups(const MachineConfig& config, const memory::Layout& layout);
+[[nodiscard]] const char* why_lookups(const machine::MachineConfig& config, const memory::Layout& layout);
 
 /// Why reads must be events on this machine; null when they need not. Only such nodes can do without.
-[[nodiscard]] const char* why_read_events(const MachineConfig& config);
+[[nodiscard]] const char* why_read_events(const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

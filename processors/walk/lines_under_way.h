@@ -10,7 +10,7 @@
 
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The arrival time of data that have not arrived and whose time is not known.
 inline constexpr sim::Ticks never = INT64_MAX;
@@ -79,4 +79,4 @@ class LinesUnderWay {
   std::unordered_set<Key> unasked_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

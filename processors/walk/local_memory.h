@@ -4,11 +4,11 @@
 #include "processors/cost/accounting.h"
 #include "processors/machine/machine_config.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 class LocalMemory {
  public:
-  explicit LocalMemory(const LocalMemoryConfig& config)
+  explicit LocalMemory(const machine::LocalMemoryConfig& config)
       : width_(config.width),
         access_(config.clock.cycles(config.access_cycles)),
         beat_(config.clock.cycles(config.cycles_per_beat)) {}
@@ -25,4 +25,4 @@ class LocalMemory {
   sim::Ticks beat_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

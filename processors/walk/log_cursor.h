@@ -10,7 +10,7 @@
 #include "processors/walk/visit_plan.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// What the tags of a node hold, for a walk of a stripped log: nothing, as before its first packet; still
 /// nothing, although it has begun its first packet; or what it has asked for.
@@ -26,7 +26,7 @@ struct alignas(64) Cursor {
   std::uint32_t writes = 0;                 ///< where the next pixel write goes in the write buffer
   std::uint32_t x = 0;
   std::uint32_t y = 0;
-  Packet packet;
+  machine::Packet packet;
   std::uint32_t first_x = 0;  ///< of the node's first packet, with Tags::late
   std::uint32_t first_y = 0;
   Tags tags = Tags::empty;
@@ -60,7 +60,7 @@ inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
 }
 
 /// Adds to the cursor's time that of a planned visit up to `line`, before which `tests` tests have begun.
-inline void settle_visit(const StepTicks& ticks, Cursor& cursor, const std::uint32_t* line,
+inline void settle_visit(const cost::StepTicks& ticks, Cursor& cursor, const std::uint32_t* line,
                          std::uint32_t tests) {
   // The count of no kind decreases, so the subtraction of packed counts has no borrow between kinds.
   const std::uint32_t begun = tests - cursor.tests_begun;
@@ -76,4 +76,4 @@ inline void settle_visit(const StepTicks& ticks, Cursor& cursor, const std::uint
   cursor.line = line;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -22,7 +22,7 @@
 #include "processors/walk/replay_input.h"
 #include "processors/walk/visit_plan.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), one that counts
 /// (counted_caches.h; they may be guarded, too), or one that records its misses (stripped_log.cpp): its
@@ -43,12 +43,12 @@ class LogWalker {
         entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
         line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
-        ticks_(step_ticks(input.config, input.log)),
+        ticks_(cost::step_ticks(input.config, input.log)),
         behind_(input),
         passes_misses_on_(!behind_.only_reads()) {
     if (Caches::present && !counted && !guarded && !input.step_by_step && input.causes == nullptr) {
       plan_ = plan != nullptr ? std::move(plan) : visits_of(input);
-      plan_limit_ = plan_->empty() ? 0 : 2U << operand_bits;
+      plan_limit_ = plan_->empty() ? 0 : 2U << program::operand_bits;
     }
   }
 
@@ -57,10 +57,10 @@ class LogWalker {
     return std::make_shared<const VisitPlan>(
         plan_visits(input.log, input.layout, input.node_rank,
                     static_cast<unsigned>(std::countr_zero(input.config.reference_bytes())),
-                    step_ticks(input.config, input.log)));
+                    cost::step_ticks(input.config, input.log)));
   }
 
-  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
   /// See PrivateSecondLevel::hit.
   std::optional<sim::Ticks> second_level_hit(std::uint32_t node, std::uint32_t line) {
@@ -78,8 +78,8 @@ class LogWalker {
 
   /// Takes the node's caches through a packet that it does not trace: no time passes, nothing is counted, and
   /// memory is not accessed.
-  void warm_up(std::uint32_t node, const Packet& packet) {
-    NodeStatistics unused;
+  void warm_up(std::uint32_t node, const machine::Packet& packet) {
+    cost::NodeStatistics unused;
     Cursor cursor;
     for (cursor.y = packet.y0; cursor.y < packet.y1; ++cursor.y) {
       for (cursor.x = packet.x0; cursor.x < packet.x1; ++cursor.x) {
@@ -93,7 +93,7 @@ class LogWalker {
 
   /// Continues `node` from its cursor. Without RunAhead it stops after every reference.
   template <bool RunAhead>
-  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  Stop advance(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     VisitTally tally;
     const Stop stop = advance<RunAhead>(node, cursor, statistics, tally);
     flush(tally, statistics);
@@ -102,7 +102,7 @@ class LogWalker {
   /// As above, but planned visits are counted in `tally`, which goes on from one walk of the node to the next
   /// until flush().
   template <bool RunAhead>
-  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
+  Stop advance(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
     do {
       stop = walk<RunAhead>(caches_.view(node), cursor, statistics, tally);
@@ -115,13 +115,13 @@ class LogWalker {
     return stop;
   }
   /// Adds the visits of a tally to the statistics and clears it.
-  void flush(VisitTally& tally, NodeStatistics& statistics) const {
+  void flush(VisitTally& tally, cost::NodeStatistics& statistics) const {
     add_visits(tally.counts, tally.visits, input_.log.mailboxes, statistics);
     tally = {};
   }
 
   /// Ends a pixel whose steps are done: what is left is to convert and store it.
-  void finish_pixel(std::uint32_t /*node*/, Cursor& cursor, NodeStatistics& statistics) const {
+  void finish_pixel(std::uint32_t /*node*/, Cursor& cursor, cost::NodeStatistics& statistics) const {
     ++statistics.steps.pixels;
     spend(cursor, ticks_.pixel, 1);
   }
@@ -156,7 +156,7 @@ class LogWalker {
     }
   }
   /// Notes which ray the steps that follow are of, where that is counted: for schemes in which rays move.
-  static void note_ray(Cursor& cursor, const LoggedRay& ray) {
+  static void note_ray(Cursor& cursor, const program::LoggedRay& ray) {
     if constexpr (counted) {
       cursor.origin.begin_ray(ray.operand());
     }
@@ -178,7 +178,7 @@ class LogWalker {
 
   // Counts a planned visit, all of whose lines hit.
   [[gnu::always_inline]] void add(VisitTally& tally, const VisitCounts& visit,
-                                  NodeStatistics& statistics) const {
+                                  cost::NodeStatistics& statistics) const {
     tally.counts += visit;
     if (++tally.visits == most_summed_visits) [[unlikely]] {
       flush(tally, statistics);
@@ -192,7 +192,7 @@ class LogWalker {
   }
 
   template <bool RunAhead>
-  Stop walk(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally) {
+  Stop walk(View cache, Cursor& cursor, cost::NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
     if (Caches::present && in_visit(cursor) && !finish_visit(cache, cursor, statistics, stop)) {
       return stop;
@@ -235,14 +235,15 @@ class LogWalker {
 
   // Takes all planned visits up to the next step that has to be taken record by record; its working values
   // are in registers. False when the node has to stop.
-  bool visit_planned(View cache, Cursor& cursor, NodeStatistics& statistics, VisitTally& tally, Stop& stop) {
+  bool visit_planned(View cache, Cursor& cursor, cost::NodeStatistics& statistics, VisitTally& tally,
+                     Stop& stop) {
     const std::uint32_t* word = cursor.word;
     const std::uint32_t* const word_end = cursor.word_end;
     const std::uint32_t limit = plan_limit_;
     sim::Ticks time = cursor.time;
     VisitTally sum = tally;
     for (; word != word_end && *word < limit; ++word) {
-      const Visit& visit = plan_->visits[operand_of(*word)];
+      const Visit& visit = plan_->visits[program::operand_of(*word)];
       if (visit.lines == 0) [[unlikely]] {
         break;
       }
@@ -287,7 +288,7 @@ class LogWalker {
   }
 
   // Takes the rest of a planned visit after a miss. False when the node has to stop.
-  bool finish_visit(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+  bool finish_visit(View cache, Cursor& cursor, cost::NodeStatistics& statistics, Stop& stop) {
     const std::uint32_t* const end = cursor.line_end;
     while (cursor.line != end) {
       const std::uint32_t* missed = cursor.line;
@@ -304,7 +305,7 @@ class LogWalker {
   }
 
   // `line` of a visit has missed. False when the node has to stop for it.
-  bool miss(Cursor& cursor, NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
+  bool miss(Cursor& cursor, cost::NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
     const std::uint32_t label = label_of(line);
     settle_visit(ticks_, cursor, line, tests_of_label(label));
     if constexpr (records) {
@@ -312,8 +313,8 @@ class LogWalker {
       ++cursor.line;
       return true;
     }
-    --hits_of(statistics, kind_of_label(label));
-    ++misses_of(statistics, kind_of_label(label));
+    --cost::hits_of(statistics, kind_of_label(label));
+    ++cost::misses_of(statistics, kind_of_label(label));
     if (passes_misses_on_) {
       stop = Stop::miss;
       return false;
@@ -329,7 +330,7 @@ class LogWalker {
 
   // Makes record `index` the current one and reads it; `bytes` may span several records of an array.
   template <bool RunAhead>
-  bool refer(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind,
+  bool refer(View cache, Cursor& cursor, cost::NodeStatistics& statistics, memory::RecordKind kind,
              std::uint64_t index, std::uint64_t bytes, Stop& stop) {
     cursor.at = input_.layout.address(kind, index);
     cursor.end = cursor.at + bytes;
@@ -356,7 +357,8 @@ class LogWalker {
 
   // Reads the rest of the current record, unit by unit. False when the node has to stop.
   template <bool RunAhead>
-  bool touch(View cache, Cursor& cursor, NodeStatistics& statistics, memory::RecordKind kind, Stop& stop) {
+  bool touch(View cache, Cursor& cursor, cost::NodeStatistics& statistics, memory::RecordKind kind,
+             Stop& stop) {
     while (cursor.at < cursor.end) {
       const memory::Address unit = cursor.at >> unit_shift_;
       cursor.kind = kind;
@@ -367,15 +369,15 @@ class LogWalker {
         }
       }
       if (access(cache, cursor, static_cast<std::uint32_t>(unit))) {
-        ++hits_of(statistics, kind);
+        ++cost::hits_of(statistics, kind);
         spend(cursor, ticks_.hit, 1);
         cursor.at = (unit + 1) << unit_shift_;
       } else if constexpr (records) {
-        ++misses_of(statistics, kind);
+        ++cost::misses_of(statistics, kind);
         cursor.time = caches_.record(cursor.time, kind, static_cast<std::uint32_t>(unit));
         cursor.at = (unit + 1) << unit_shift_;
       } else {
-        ++misses_of(statistics, kind);
+        ++cost::misses_of(statistics, kind);
         if (passes_misses_on_) {
           stop = Stop::miss;
           return false;
@@ -393,7 +395,7 @@ class LogWalker {
   // Takes the rest of a leaf that is not planned: reads its list, then tests its objects one by one, each
   // after the look-up of its mailbox where there are mailboxes.
   template <bool RunAhead>
-  bool finish_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, Stop& stop) {
+  bool finish_leaf(View cache, Cursor& cursor, cost::NodeStatistics& statistics, Stop& stop) {
     if (cursor.list_count != 0) {
       const std::uint64_t bytes = std::uint64_t{cursor.list_count} * entry_bytes_;
       cursor.list_count = 0;
@@ -425,16 +427,16 @@ class LogWalker {
     if (cursor.tested == nullptr) {
       return false;
     }
-    return !tested_in_mask(cursor.tested, cursor.entry_number++);
+    return !program::tested_in_mask(cursor.tested, cursor.entry_number++);
   }
 
   // Counts a test and spends its compute time.
-  void begin_test(Cursor& cursor, StepCounts& steps, std::uint32_t primitive) const {
-    cursor.time = sim::add_ticks(cursor.time, count_test(ticks_, input_.log.kind_of(primitive), steps));
+  void begin_test(Cursor& cursor, cost::StepCounts& steps, std::uint32_t primitive) const {
+    cursor.time = sim::add_ticks(cursor.time, cost::count_test(ticks_, input_.log.kind_of(primitive), steps));
   }
 
   template <bool RunAhead>
-  bool refer_node(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t tree_node,
+  bool refer_node(View cache, Cursor& cursor, cost::NodeStatistics& statistics, std::uint32_t tree_node,
                   Stop& stop) {
     note_node(cursor, tree_node);
     const std::uint32_t record = rank_ == nullptr ? tree_node : rank_[tree_node];
@@ -445,7 +447,7 @@ class LogWalker {
   }
 
   template <bool RunAhead>
-  bool take_leaf(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t leaf,
+  bool take_leaf(View cache, Cursor& cursor, cost::NodeStatistics& statistics, std::uint32_t leaf,
                  std::uint32_t entries, const std::uint32_t* tested, Stop& stop) {
     ++statistics.steps.leaves;
     statistics.steps.lists += entries != 0 ? 1 : 0;
@@ -461,56 +463,57 @@ class LogWalker {
 
   // Takes any step record by record: its compute cycles first, then its references.
   template <bool RunAhead>
-  bool take_step(View cache, Cursor& cursor, NodeStatistics& statistics, std::uint32_t word, Stop& stop) {
-    const std::uint32_t operand = operand_of(word);
-    StepCounts& steps = statistics.steps;
-    switch (step_of(word)) {
-      case Step::branch:
+  bool take_step(View cache, Cursor& cursor, cost::NodeStatistics& statistics, std::uint32_t word,
+                 Stop& stop) {
+    const std::uint32_t operand = program::operand_of(word);
+    cost::StepCounts& steps = statistics.steps;
+    switch (program::step_of(word)) {
+      case program::Step::branch:
         ++steps.branches;
         spend(cursor, ticks_.branch, 1);
         if constexpr (guarded) {
           cursor.branch = operand;
         }
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
-      case Step::leaf:
+      case program::Step::leaf:
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, topology_[operand].count, nullptr,
                                    stop);
-      case Step::partial_leaf: {
+      case program::Step::partial_leaf: {
         const std::uint32_t tests = *cursor.word++;
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, tests, nullptr, stop);
       }
-      case Step::mailed_leaf: {
+      case program::Step::mailed_leaf: {
         const std::uint32_t entries = *cursor.word++;
         const std::uint32_t* const tested = cursor.word;
-        cursor.word += mask_words(entries);
+        cursor.word += program::mask_words(entries);
         return take_leaf<RunAhead>(cache, cursor, statistics, operand, entries, tested, stop);
       }
-      case Step::ray:
+      case program::Step::ray:
         if (counted) {
           cursor.origin.begin_ray(operand);
         }
-        ++(steps.*ray_counters[ray_number_of(operand)]);
-        spend(cursor, ticks_.ray[ray_number_of(operand)], 1);
+        ++(steps.*cost::ray_counters[program::ray_number_of(operand)]);
+        spend(cursor, ticks_.ray[program::ray_number_of(operand)], 1);
         return true;
-      case Step::shade:
+      case program::Step::shade:
         ++steps.shades;
         spend(cursor, ticks_.shade, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
                                input_.layout.record_bytes(memory::RecordKind::material), stop);
-      case Step::cut:
+      case program::Step::cut:
         ++steps.cuts;
         spend(cursor, ticks_.cut, 1);
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
-      case Step::pass:
+      case program::Step::pass:
         ++steps.passes;
         spend(cursor, ticks_.pass, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
                                input_.layout.record_bytes(memory::RecordKind::material), stop);
-      case Step::light:
+      case program::Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);
         return true;
-      case Step::texel:
+      case program::Step::texel:
         ++steps.texels;
         spend(cursor, ticks_.texel, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::texel,
@@ -521,7 +524,7 @@ class LogWalker {
   }
 
   // Serves a miss of a machine with a second level. False when it needs the interconnect.
-  bool serve(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  bool serve(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     const auto line = static_cast<std::uint32_t>(missed_address(cursor) >> unit_shift_);
     if (!behind_.second_level_holds(node, line, cursor.time, statistics.time)) {
       if (!behind_.reads_alone()) {
@@ -536,7 +539,7 @@ class LogWalker {
   }
 
   // A read without the interconnect.
-  void read_alone(Cursor& cursor, NodeStatistics& statistics, std::uint32_t bytes) {
+  void read_alone(Cursor& cursor, cost::NodeStatistics& statistics, std::uint32_t bytes) {
     note_wait(cursor, behind_.read(bytes, cursor.time, statistics.time));
   }
 
@@ -544,7 +547,8 @@ class LogWalker {
   Caches caches_;
   // Branches and leaves are the two lowest steps, so one comparison tells a planned step. plan_limit_ is 0
   // without a plan.
-  static_assert(static_cast<std::uint32_t>(Step::branch) == 0 && static_cast<std::uint32_t>(Step::leaf) == 1);
+  static_assert(static_cast<std::uint32_t>(program::Step::branch) == 0 &&
+                static_cast<std::uint32_t>(program::Step::leaf) == 1);
   std::shared_ptr<const VisitPlan> plan_;  // null where no visit is planned
   std::uint32_t plan_limit_ = 0;
   const accel::TopologyNode* topology_;
@@ -554,9 +558,9 @@ class LogWalker {
   std::uint32_t entry_bytes_;
   std::uint32_t line_bytes_;
   unsigned unit_shift_;
-  StepTicks ticks_;
+  cost::StepTicks ticks_;
   BehindCache behind_;
   bool passes_misses_on_;  ///< to the second level or the interconnect
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

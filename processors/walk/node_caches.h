@@ -10,7 +10,7 @@
 #include "memory/tag_array.h"
 #include "processors/machine/machine_config.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Which of the split caches a record kind uses.
 inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 1, 2, 3, 3, 3};
@@ -27,7 +27,7 @@ class UnifiedCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = false;  ///< the record kind does not matter
-  UnifiedCaches(const MachineConfig& config, const memory::CacheShape& shape)
+  UnifiedCaches(const machine::MachineConfig& config, const memory::CacheShape& shape)
       : tags_(shape, config.all_nodes(), config.cache.cache.seed) {}
   class View {
    public:
@@ -61,7 +61,7 @@ class AnyCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = true;
-  explicit AnyCaches(const MachineConfig& config) : tags_(tags_of(config)) {}
+  explicit AnyCaches(const machine::MachineConfig& config) : tags_(tags_of(config)) {}
   class View {
    public:
     View(std::vector<memory::TagArray>& tags, std::uint32_t node) : tags_(tags), node_(node) {}
@@ -100,11 +100,11 @@ class AnyCaches {
   [[nodiscard]] View view(std::uint32_t node) { return {tags_, node}; }
 
  private:
-  static std::vector<memory::TagArray> tags_of(const MachineConfig& config) {
+  static std::vector<memory::TagArray> tags_of(const machine::MachineConfig& config) {
     std::vector<memory::TagArray> tags;
-    if (config.cache.organisation == CacheOrganisation::unified) {
+    if (config.cache.organisation == machine::CacheOrganisation::unified) {
       tags.emplace_back(config.cache.cache, config.all_nodes());
-    } else if (config.cache.organisation == CacheOrganisation::split) {
+    } else if (config.cache.organisation == machine::CacheOrganisation::split) {
       for (const std::uint64_t size : config.cache.split_sizes) {
         memory::CacheConfig part = config.cache.cache;
         part.size = size;
@@ -122,7 +122,8 @@ class NonReplacingCaches {
  public:
   static constexpr bool present = true;
   static constexpr bool by_kind = false;
-  NonReplacingCaches(const MachineConfig& config, std::uint64_t lines) : lines_(lines, config.all_nodes()) {}
+  NonReplacingCaches(const machine::MachineConfig& config, std::uint64_t lines)
+      : lines_(lines, config.all_nodes()) {}
   class View {
    public:
     View(memory::LineSet& lines, std::uint32_t node) : lines_(&lines), node_(node) {}
@@ -154,4 +155,4 @@ struct NoCaches {
   [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

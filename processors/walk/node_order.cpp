@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
@@ -127,4 +127,4 @@ std::vector<std::uint32_t> node_rank(const accel::Topology& topology, bool leaf_
   return treelet_rank(topology, leaf_records, std::max(1U, static_cast<std::uint32_t>(most)));
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

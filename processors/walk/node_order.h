@@ -8,7 +8,7 @@
 #include "accel/topology.h"
 #include "memory/layout.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The rank of a node that has no record.
 inline constexpr std::uint32_t no_record = 0xffffffffU;
@@ -31,4 +31,4 @@ inline constexpr std::uint32_t no_record = 0xffffffffU;
 [[nodiscard]] std::vector<std::uint32_t> node_rank(const accel::Topology& topology, bool leaf_records,
                                                    const memory::LayoutConfig& layout);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

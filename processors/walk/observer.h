@@ -19,7 +19,7 @@
 #include "processors/walk/replay_input.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// What a node does in a piece of its time. `working` is everything it does by itself: the activities
 /// traversal, intersection, shading, building, cache_access, switching and messaging, and the transfer and
@@ -90,4 +90,4 @@ inline void spent_reading(Observer& observer, std::uint32_t node, const memory::
   piece(NodeState::transfer, service.transfer);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

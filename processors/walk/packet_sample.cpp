@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 PacketSample::PacketSample(std::vector<std::uint64_t> chosen, std::uint64_t packets, std::uint64_t warm_up)
     : chosen_(std::move(chosen)), is_chosen_(packets), warm_up_(warm_up) {
@@ -16,4 +16,4 @@ PacketSample::PacketSample(std::vector<std::uint64_t> chosen, std::uint64_t pack
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -17,7 +17,7 @@
 #include "sim/mix.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The packets that are replayed, by their numbers in the order in which the host hands packets out.
 class PacketSample {
@@ -69,18 +69,19 @@ class PacketMeter {
       : figures_(packets), open_(packets == 0 ? 0 : nodes) {}
 
   [[nodiscard]] bool on() const { return !figures_.empty(); }
-  void begin(std::uint32_t node, std::uint64_t packet, sim::Ticks start, const NodeStatistics& statistics) {
+  void begin(std::uint32_t node, std::uint64_t packet, sim::Ticks start,
+             const cost::NodeStatistics& statistics) {
     open_[node] = {true,
                    packet,
-                   {start, start - sum_of(statistics.time), statistics.references.references(),
+                   {start, start - cost::sum_of(statistics.time), statistics.references.references(),
                     statistics.references.all_misses()}};
   }
   /// The node asks for its next packet, which ends the one it has, if any. During a replay `statistics` have
   /// the time of waits only.
-  void end(std::uint32_t node, sim::Ticks now, const NodeStatistics& statistics) {
+  void end(std::uint32_t node, sim::Ticks now, const cost::NodeStatistics& statistics) {
     const Open& open = open_[node];
     if (open.any) {
-      figures_[open.packet] = {now - open.before.time, now - sum_of(statistics.time) - open.before.busy,
+      figures_[open.packet] = {now - open.before.time, now - cost::sum_of(statistics.time) - open.before.busy,
                                statistics.references.references() - open.before.references,
                                statistics.references.all_misses() - open.before.misses};
     }
@@ -97,4 +98,4 @@ class PacketMeter {
   std::vector<Open> open_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

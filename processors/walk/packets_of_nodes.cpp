@@ -1,12 +1,12 @@
 #include "processors/walk/packets_of_nodes.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 void PacketsOfNodes::begin(const ReplayInput& input) {
   log_ = &input.log;
   config_ = input.config;
-  config_.placement = Placement::shared;  // so that every miss stops a walk,
-  config_.l2 = {};                        // and no second level serves it
+  config_.placement = machine::Placement::shared;  // so that every miss stops a walk,
+  config_.l2 = {};                                 // and no second level serves it
   layout_ = input.layout;
   packets_ = input.packets;
   node_rank_.assign(input.node_rank.begin(), input.node_rank.end());
@@ -29,4 +29,4 @@ ReplayInput PacketsOfNodes::input(bool step_by_step) const {
           .step_by_step = step_by_step};
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

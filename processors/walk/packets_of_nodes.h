@@ -13,7 +13,7 @@
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/observer.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Only for the image scheme with a given tree: where the tree is built, other nodes decide what a node
 /// reads. With dynamic assignment a node's packets depend on the whole machine, hence the recording.
@@ -34,10 +34,10 @@ class PacketsOfNodes : public Observer {
   [[nodiscard]] ReplayInput input(bool step_by_step) const;
 
  private:
-  const WorkLog* log_ = nullptr;
-  MachineConfig config_;
+  const program::WorkLog* log_ = nullptr;
+  machine::MachineConfig config_;
   std::optional<memory::Layout> layout_;
-  std::optional<PacketList> packets_;
+  std::optional<machine::PacketList> packets_;
   std::vector<std::uint32_t> node_rank_;
   std::vector<std::vector<std::uint64_t>> packets_of_;
 };
@@ -46,7 +46,7 @@ class PacketsOfNodes : public Observer {
 template <class Use>
 void for_each_pixel(const ReplayInput& input, std::span<const std::uint64_t> packets, const Use& use) {
   for (const std::uint64_t number : packets) {
-    const Packet packet = input.packets[number];
+    const machine::Packet packet = input.packets[number];
     for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
       for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
         const std::span<const std::uint32_t> words = input.log.pixel(x, y);
@@ -59,4 +59,4 @@ void for_each_pixel(const ReplayInput& input, std::span<const std::uint64_t> pac
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

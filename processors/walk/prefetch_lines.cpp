@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 PrefetchLines::PrefetchLines(const ReplayInput& input, std::uint32_t line_bytes)
     : input_(input),
@@ -15,4 +15,4 @@ std::optional<std::uint32_t> PrefetchLines::next(memory::RecordKind kind, std::u
   return begin < end ? std::optional(line + 1) : std::nullopt;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

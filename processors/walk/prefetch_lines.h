@@ -7,7 +7,7 @@
 #include "processors/walk/node_order.h"
 #include "processors/walk/replay_input.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Calls visit(line) for the lines of `count` records of `bytes` each, in ascending order, until one call
 /// returns false; returns the last call's result, or true without records. address_of(i) is the address of
@@ -64,4 +64,4 @@ class PrefetchLines {
   unsigned shift_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -6,12 +6,12 @@
 #include "processors/walk/node_order.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
 // Number of nodes that have a record in a tree that is given.
-std::uint64_t node_records(const WorkLog& log) {
+std::uint64_t node_records(const program::WorkLog& log) {
   const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
   if (!accel::walks_bvh(log.traversal)) {
     return nodes.size();
@@ -22,7 +22,8 @@ std::uint64_t node_records(const WorkLog& log) {
 
 }  // namespace
 
-memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::optional<TreePlan>& plan) {
+memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
+                         std::optional<TreePlan>& plan) {
   const memory::RecordCounts counts = {plan ? plan->initial_nodes() : node_records(log),
                                        plan ? plan->initial_entries() : log.topology.entries.size(),
                                        log.primitives,
@@ -38,7 +39,7 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
     throw sim::KeyError("cache.line", "the database has 2^32 or more lines; use longer cache lines");
   }
   if (config.banks.dram) {
-    const bool shared_tree = plan && config.build.sharing == Sharing::shared;
+    const bool shared_tree = plan && config.build.sharing == machine::Sharing::shared;
     const memory::Address end = std::max(layout.end(), shared_tree ? plan->end() : 0);
     if (end > config.banks.dram->capacity()) {
       throw sim::KeyError("dram.rows",
@@ -49,8 +50,8 @@ memory::Layout layout_of(const WorkLog& log, const MachineConfig& config, std::o
   return layout;
 }
 
-std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config) {
+std::vector<std::uint32_t> node_ranks(const program::WorkLog& log, const machine::MachineConfig& config) {
   return node_rank(log.topology, !accel::walks_bvh(log.traversal), config.layout);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

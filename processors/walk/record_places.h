@@ -10,14 +10,15 @@
 #include "processors/program/work_log.h"
 #include "processors/walk/tree_plan.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The layout of the database's records; sets `plan` to the places of what is built during the frame, behind
 /// them. Throws UserError for a database too large for line numbers.
-[[nodiscard]] memory::Layout layout_of(const WorkLog& log, const MachineConfig& config,
+[[nodiscard]] memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
                                        std::optional<TreePlan>& plan);
 
 /// The record number of each tree node, or no_record (node_order.h); empty when it is the node number.
-[[nodiscard]] std::vector<std::uint32_t> node_ranks(const WorkLog& log, const MachineConfig& config);
+[[nodiscard]] std::vector<std::uint32_t> node_ranks(const program::WorkLog& log,
+                                                    const machine::MachineConfig& config);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

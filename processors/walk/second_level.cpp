@@ -1,12 +1,12 @@
 #include "processors/walk/second_level.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
-memory::BankConfig banks_of(const MachineConfig& config) {
+memory::BankConfig banks_of(const machine::MachineConfig& config) {
   memory::BankConfig banks = config.banks;
-  if (config.l2.sharing == SecondLevel::shared) {
-    banks.cache =
-        memory::SharedCacheConfig{second_level_cache(config), config.banks.clock, config.l2.hit_cycles};
+  if (config.l2.sharing == machine::SecondLevel::shared) {
+    banks.cache = memory::SharedCacheConfig{machine::second_level_cache(config), config.banks.clock,
+                                            config.l2.hit_cycles};
   }
   return banks;
 }
@@ -19,12 +19,12 @@ memory::CacheCounters SecondLevelResult::counters() const {
   return sum;
 }
 
-PrivateSecondLevel::PrivateSecondLevel(const MachineConfig& config)
+PrivateSecondLevel::PrivateSecondLevel(const machine::MachineConfig& config)
     : hit_ticks_(config.clock.cycles(config.l2.hit_cycles)) {
-  if (config.l2.sharing == SecondLevel::private_caches) {
-    tags_.emplace(second_level_cache(config), config.all_nodes());
+  if (config.l2.sharing == machine::SecondLevel::private_caches) {
+    tags_.emplace(machine::second_level_cache(config), config.all_nodes());
     counters_.resize(config.all_nodes());
   }
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

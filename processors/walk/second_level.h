@@ -13,10 +13,10 @@
 #include "processors/machine/second_level_config.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The configuration of a cluster's banks, with the shared cache before them if the machine has one.
-[[nodiscard]] memory::BankConfig banks_of(const MachineConfig& config);
+[[nodiscard]] memory::BankConfig banks_of(const machine::MachineConfig& config);
 
 /// What the second level counted: an entry for each node (private) or each cluster (shared).
 struct SecondLevelResult {
@@ -32,18 +32,18 @@ struct SecondLevelResult {
 class PrivateSecondLevel {
  public:
   /// Not present unless the machine has private second-level caches.
-  explicit PrivateSecondLevel(const MachineConfig& config);
+  explicit PrivateSecondLevel(const machine::MachineConfig& config);
 
   [[nodiscard]] bool present() const { return tags_.has_value(); }
 
   /// Looks up a line that `node`'s first level does not hold. True when the second level holds it: the
   /// time of a hit is then added to `time` and to the division. False also where there is no second
   /// level.
-  bool access(std::uint32_t node, std::uint32_t line, sim::Ticks& time, TimeDivision& division) {
+  bool access(std::uint32_t node, std::uint32_t line, sim::Ticks& time, cost::TimeDivision& division) {
     if (!look_up(node, line)) {
       return false;
     }
-    division[static_cast<std::size_t>(Activity::cache_access)] += hit_ticks_;
+    division[static_cast<std::size_t>(cost::Activity::cache_access)] += hit_ticks_;
     time = sim::add_ticks(time, hit_ticks_);
     return true;
   }
@@ -74,4 +74,4 @@ class PrivateSecondLevel {
   std::vector<memory::CacheCounters> counters_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -16,7 +16,7 @@
 #include "processors/walk/record_places.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 // Writes a row of packets of the stripped log for caches of so many ways.
 class StrippedLog::BandWriter {
@@ -93,7 +93,7 @@ class StrippedLog::PacketCaches {
   static constexpr bool records = true;
 
   /// References to the first `taken_out` lines of a set's list are taken out of all stripped logs.
-  PacketCaches(const MachineConfig& config, std::uint32_t taken_out)
+  PacketCaches(const machine::MachineConfig& config, std::uint32_t taken_out)
       : taken_out_(taken_out), hit_(config.cache.hit_cycles) {
     memory::CacheConfig cache = config.cache.cache;
     for (std::size_t i = 0; i < caches; ++i) {
@@ -151,7 +151,7 @@ class StrippedLog::PacketCaches {
   std::vector<BandWriter> writers;  ///< one for each stripped log
 
  private:
-  static constexpr std::size_t caches = Split ? split_caches : 1;
+  static constexpr std::size_t caches = Split ? machine::split_caches : 1;
 
   static std::size_t number_of(memory::RecordKind kind) {
     return Split ? split_cache_of[static_cast<std::size_t>(kind)] : 0;
@@ -163,10 +163,10 @@ class StrippedLog::PacketCaches {
   std::vector<memory::RecencyLists<Depth>> lists_;
 };
 
-std::string StrippedLog::key_of(const MachineConfig& config) {
-  if (config.scheme != Scheme::image || config.build.sharing != Sharing::given ||
-      config.cache.organisation == CacheOrganisation::none || config.contexts > 1 || config.prefetch.on() ||
-      config.count.any()) {
+std::string StrippedLog::key_of(const machine::MachineConfig& config) {
+  if (config.scheme != machine::Scheme::image || config.build.sharing != machine::Sharing::given ||
+      config.cache.organisation == machine::CacheOrganisation::none || config.contexts > 1 ||
+      config.prefetch.on() || config.count.any()) {
     return {};
   }
   std::string key;
@@ -183,13 +183,13 @@ std::string StrippedLog::key_of(const MachineConfig& config) {
   if (layout.node_order == memory::NodeOrder::treelets) {
     add(layout.treelet_bytes);
   }
-  const OperationCycles& cost = config.operations;
+  const machine::OperationCycles& cost = config.operations;
   for (const std::int64_t cycles : {cost.add, cost.multiply, cost.divide, cost.square_root, cost.compare,
                                     cost.integer, cost.load, cost.store, config.cache.hit_cycles}) {
     add(cycles);
   }
   memory::CacheConfig cache = config.cache.cache;
-  if (config.cache.organisation == CacheOrganisation::unified) {
+  if (config.cache.organisation == machine::CacheOrganisation::unified) {
     add(memory::shape_of(cache).sets);
     return key;
   }
@@ -200,7 +200,7 @@ std::string StrippedLog::key_of(const MachineConfig& config) {
   return key;
 }
 
-std::uint32_t StrippedLog::ways_of(const MachineConfig& config) {
+std::uint32_t StrippedLog::ways_of(const machine::MachineConfig& config) {
   const memory::CacheConfig& cache = config.cache.cache;
   if (cache.ways == memory::full_ways || cache.ways > most_ways) {
     return 0;
@@ -239,7 +239,7 @@ class StrippedLog::Stripper {
     bool fits = true;
     for (std::uint32_t x0 = 0; x0 < log_.width && fits;) {
       const std::uint32_t x1 = x0 + std::min(packets_.width, log_.width - x0);
-      NodeStatistics statistics;
+      cost::NodeStatistics statistics;
       Cursor cursor;
       for (cursor.y = y0; cursor.y < y1 && fits; ++cursor.y) {
         for (cursor.x = x0; cursor.x < x1 && fits; ++cursor.x) {
@@ -262,7 +262,7 @@ class StrippedLog::Stripper {
 
  private:
   // False when the memory is used up.
-  bool strip_pixel(Caches& caches, Cursor& cursor, NodeStatistics& statistics) {
+  bool strip_pixel(Caches& caches, Cursor& cursor, cost::NodeStatistics& statistics) {
     for (BandWriter& writer : caches.writers) {
       writer.begin_pixel();
     }
@@ -278,15 +278,15 @@ class StrippedLog::Stripper {
     return (left_ -= bytes) >= 0;
   }
 
-  const WorkLog& log_;
-  PacketConfig packets_;
+  const program::WorkLog& log_;
+  machine::PacketConfig packets_;
   LogWalker<Caches> walker_;
   std::atomic<std::int64_t>& left_;
   sim::WorkMeter* meter_;
 };
 
-std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog& log,
-                                                                  const MachineConfig& config,
+std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program::WorkLog& log,
+                                                                  const machine::MachineConfig& config,
                                                                   std::span<const std::uint32_t> ways,
                                                                   std::uint64_t most_bytes,
                                                                   sim::WorkMeter* meter) {
@@ -298,14 +298,14 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
     return made;
   }
   // Times are in cycles, and there is nothing behind the caches.
-  MachineConfig plain = config;
+  machine::MachineConfig plain = config;
   plain.clock = sim::Clock::from_period(1);
-  plain.placement = Placement::shared;
+  plain.placement = machine::Placement::shared;
   plain.l2 = {};
   std::optional<TreePlan> given;
   try {
     const memory::Layout layout = layout_of(log, plain, given);
-    const PacketList packets(log.width, log.height, plain.packets);
+    const machine::PacketList packets(log.width, log.height, plain.packets);
     if (layout.end() / plain.cache.cache.line >= most_lines) {
       return made;
     }
@@ -340,7 +340,7 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
       });
     };
     const std::uint32_t deepest = *std::max_element(ways.begin(), ways.end());
-    if (config.cache.organisation == CacheOrganisation::split) {
+    if (config.cache.organisation == machine::CacheOrganisation::split) {
       strip_with.operator()<PacketCaches<most_ways, true>>();
     } else if (deepest <= 4) {
       strip_with.operator()<PacketCaches<4, false>>();
@@ -366,7 +366,8 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const WorkLog&
   return made;
 }
 
-std::shared_ptr<const StrippedLog> StrippedLog::make(const WorkLog& log, const MachineConfig& config,
+std::shared_ptr<const StrippedLog> StrippedLog::make(const program::WorkLog& log,
+                                                     const machine::MachineConfig& config,
                                                      std::uint64_t most_bytes, sim::WorkMeter* meter) {
   const std::uint32_t ways = ways_of(config);
   return make(log, config, std::span(&ways, 1), most_bytes, meter).front();
@@ -388,4 +389,4 @@ std::uint64_t StrippedLog::references() const {
   return words - std::uint64_t{width_} * height_;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -40,11 +40,11 @@
 #include "processors/program/work_log.h"
 #include "sim/work_meter.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// Steps and references of a whole packet; the pixels finished are not among the steps.
 struct PacketTotals {
-  StepCounts steps;
+  cost::StepCounts steps;
   std::array<std::int64_t, memory::record_kinds> references{};
 };
 
@@ -54,10 +54,10 @@ class StrippedLog {
   /// stripped logs for machines of equal keys are made in one pass. Empty for a machine that cannot use one:
   /// with another scheme than image, without caches, with a tree that is built, with contexts, prefetching,
   /// or counting of more than hits and misses.
-  [[nodiscard]] static std::string key_of(const MachineConfig& config);
+  [[nodiscard]] static std::string key_of(const machine::MachineConfig& config);
   /// The ways of the LRU caches for which a log must be stripped to suit the machine; 0 where only references
   /// to the newest line may be taken out. Machines of equal keys and ways share a stripped log.
-  [[nodiscard]] static std::uint32_t ways_of(const MachineConfig& config);
+  [[nodiscard]] static std::uint32_t ways_of(const machine::MachineConfig& config);
   /// The most ways for which outcomes are worked out; with more, ways_of() is 0.
   static constexpr std::uint32_t most_ways = 16;
 
@@ -66,11 +66,11 @@ class StrippedLog {
   /// the words of all would take more than `most_bytes`; all are null for a machine without key. `meter`
   /// counts each packet, and after its stop() this throws sim::Stopped; null: nobody waits.
   [[nodiscard]] static std::vector<std::shared_ptr<const StrippedLog>> make(
-      const WorkLog& log, const MachineConfig& config, std::span<const std::uint32_t> ways,
+      const program::WorkLog& log, const machine::MachineConfig& config, std::span<const std::uint32_t> ways,
       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max(), sim::WorkMeter* meter = nullptr);
   /// The stripped log for `config` alone.
   [[nodiscard]] static std::shared_ptr<const StrippedLog> make(
-      const WorkLog& log, const MachineConfig& config,
+      const program::WorkLog& log, const machine::MachineConfig& config,
       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max(), sim::WorkMeter* meter = nullptr);
 
   // A word for each reference: the cycles since the end of the reference before, or since the beginning of
@@ -104,11 +104,11 @@ class StrippedLog {
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] std::uint32_t ways() const { return ways_; }
   /// Whether `config` describes a machine that this log was stripped for.
-  [[nodiscard]] bool suits(const MachineConfig& config) const {
+  [[nodiscard]] bool suits(const machine::MachineConfig& config) const {
     return key_ == key_of(config) && ways_ == ways_of(config);
   }
   /// Whether this may be the stripped form of `log`: image and tree have the same size.
-  [[nodiscard]] bool fits(const WorkLog& log) const {
+  [[nodiscard]] bool fits(const program::WorkLog& log) const {
     return width_ == log.width && height_ == log.height && nodes_ == log.topology.nodes.size();
   }
   /// Number of references that are left.
@@ -135,7 +135,8 @@ class StrippedLog {
   template <class Caches>
   class Stripper;
 
-  StrippedLog(const WorkLog& log, std::string key, std::uint32_t ways, const PacketConfig& packets)
+  StrippedLog(const program::WorkLog& log, std::string key, std::uint32_t ways,
+              const machine::PacketConfig& packets)
       : key_(std::move(key)),
         ways_(ways),
         width_(log.width),
@@ -155,4 +156,4 @@ class StrippedLog {
   std::shared_ptr<const Totals> totals_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -14,7 +14,7 @@
 #include "processors/walk/replay_input.h"
 #include "processors/walk/stripped_log.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// `Caches` is one of node_caches.h. It has the members of LogWalker that ImageNodes calls.
 template <class Caches>
@@ -28,11 +28,11 @@ class StrippedWalker {
         line_bytes_(input.config.reference_bytes()),
         line_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
         clock_(input.config.clock),
-        ticks_(step_ticks(input.config, input.log)),
+        ticks_(cost::step_ticks(input.config, input.log)),
         behind_(input),
         tags_may_be_late_(stripped_.ways() != 0 && input.sample == nullptr) {}
 
-  [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
+  [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
 
   /// The node begins the packet at its cursor.
@@ -54,12 +54,12 @@ class StrippedWalker {
   static void begin_pixel(const Cursor& /*cursor*/) {}
 
   /// As LogWalker::warm_up.
-  void warm_up(std::uint32_t node, const Packet& packet) { warm_up(node, packet.x0, packet.y0); }
+  void warm_up(std::uint32_t node, const machine::Packet& packet) { warm_up(node, packet.x0, packet.y0); }
 
   /// Continues `node` from its cursor to its next miss or the end of its pixel. Hits are counted with the
   /// packet's totals, when the packet is finished.
   template <bool RunAhead>
-  Stop advance(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  Stop advance(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     static_assert(RunAhead);
     const Stop stop = cursor.tags == Tags::late ? walk<true>(node, cursor, statistics)
                                                 : walk<false>(node, cursor, statistics);
@@ -67,7 +67,7 @@ class StrippedWalker {
     return stop;
   }
 
-  void finish_pixel(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  void finish_pixel(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     ++statistics.steps.pixels;
     spend(cursor, ticks_.pixel, 1);
     if (cursor.x + 1 != cursor.packet.x1 || cursor.y + 1 != cursor.packet.y1) {
@@ -119,7 +119,7 @@ class StrippedWalker {
 
   // `Empty`: no reference is looked up, because the cache held nothing when the packet began.
   template <bool Empty>
-  Stop walk(std::uint32_t node, Cursor& cursor, NodeStatistics& statistics) {
+  Stop walk(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     const View cache = caches_.view(node);
     const std::uint64_t* word = cursor.stripped;
     sim::Ticks time = cursor.time;
@@ -139,8 +139,8 @@ class StrippedWalker {
       }
       const memory::RecordKind kind = kind_of(what);
       const std::uint32_t line = what >> StrippedLog::what_bits;
-      --hits_of(statistics, kind);
-      ++misses_of(statistics, kind);
+      --cost::hits_of(statistics, kind);
+      ++cost::misses_of(statistics, kind);
       if (behind_.second_level_holds(node, line, time, statistics.time)) {
         continue;
       }
@@ -161,9 +161,9 @@ class StrippedWalker {
   std::uint32_t line_bytes_;
   unsigned line_shift_;
   sim::Clock clock_;
-  StepTicks ticks_;
+  cost::StepTicks ticks_;
   BehindCache behind_;
   bool tags_may_be_late_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

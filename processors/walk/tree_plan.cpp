@@ -7,7 +7,7 @@
 #include "processors/walk/node_order.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
 }  // namespace
 
 TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts,
-                   const MachineConfig& config)
+                   const machine::MachineConfig& config)
     : topology_(topology),
       starts_(std::move(starts)),
       places_(topology.nodes.size()),
@@ -34,7 +34,8 @@ TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> sta
       eager_.push_back(node);
     }
     if (starts_[node] == BranchStart::lazy) {
-      const bool own_record = config.build.sharing == Sharing::private_trees && places_[node].home == none;
+      const bool own_record =
+          config.build.sharing == machine::Sharing::private_trees && places_[node].home == none;
       places_[node].lazy = static_cast<std::uint32_t>(lazy_.size());
       lazy_.push_back({node, own_record ? slots_++ : none, 0});
     }
@@ -53,7 +54,7 @@ std::uint32_t TreePlan::listed(std::uint32_t node) const {
 }
 
 // Initial nodes keep the order that they have in the whole tree.
-void TreePlan::number_records(const MachineConfig& config) {
+void TreePlan::number_records(const machine::MachineConfig& config) {
   std::vector<std::uint32_t> order(places_.size());
   std::iota(order.begin(), order.end(), 0U);
   const std::vector<std::uint32_t> rank = node_rank(topology_, true, config.layout);
@@ -67,7 +68,7 @@ void TreePlan::number_records(const MachineConfig& config) {
   }
 }
 
-void TreePlan::place_lists(const MachineConfig& config) {
+void TreePlan::place_lists(const machine::MachineConfig& config) {
   const std::uint64_t entry_bytes = config.layout.entry_bytes;
   for (std::uint32_t node = 0; node < places_.size(); ++node) {
     Place& place = places_[node];
@@ -99,11 +100,11 @@ void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_byt
   end_ = first_block() + all_block_bytes_;
 }
 
-VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log, const memory::Layout& layout,
-                              unsigned line_shift, const StepTicks& ticks) {
+VisitPlan plan_initial_visits(const TreePlan& plan, const program::WorkLog& log, const memory::Layout& layout,
+                              unsigned line_shift, const cost::StepTicks& ticks) {
   // The log's topology, with its lists where the plan puts them.
   const accel::Topology& topology = log.topology;
-  WorkLog placed_log;
+  program::WorkLog placed_log;
   placed_log.primitives = log.primitives;
   placed_log.quadrics = log.quadrics;
   accel::Topology& placed = placed_log.topology;
@@ -134,4 +135,4 @@ VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log, const me
   return visits;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -20,7 +20,7 @@
 #include "processors/walk/build_start.h"
 #include "processors/walk/visit_plan.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 class TreePlan {
  public:
@@ -43,7 +43,8 @@ class TreePlan {
   };
 
   /// `starts` must have passed check_starts.
-  TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts, const MachineConfig& config);
+  TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts,
+           const machine::MachineConfig& config);
 
   /// Number of records and entries of the initial tree, for the layout's sections.
   [[nodiscard]] std::uint64_t initial_nodes() const { return initial_nodes_; }
@@ -75,8 +76,8 @@ class TreePlan {
   [[nodiscard]] std::uint64_t stride() const { return stride_; }  ///< of node records
 
  private:
-  void number_records(const MachineConfig& config);
-  void place_lists(const MachineConfig& config);
+  void number_records(const machine::MachineConfig& config);
+  void place_lists(const machine::MachineConfig& config);
 
   const accel::Topology& topology_;
   std::vector<BranchStart> starts_;
@@ -97,8 +98,8 @@ class TreePlan {
 };
 
 /// The visits to nodes of the initial tree other than P nodes; the visits to all others have no lines.
-[[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const WorkLog& log,
+[[nodiscard]] VisitPlan plan_initial_visits(const TreePlan& plan, const program::WorkLog& log,
                                             const memory::Layout& layout, unsigned line_shift,
-                                            const StepTicks& ticks);
+                                            const cost::StepTicks& ticks);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

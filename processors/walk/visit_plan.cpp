@@ -3,7 +3,7 @@
 #include "processors/walk/node_order.h"
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 namespace {
 
@@ -24,7 +24,7 @@ VisitCount test_count(accel::PrimitiveKind kind) {
 // Collects the lines of visits, one visit after the other.
 class Planner {
  public:
-  Planner(const memory::Layout& layout, unsigned line_shift, const StepTicks& ticks, VisitPlan& plan)
+  Planner(const memory::Layout& layout, unsigned line_shift, const cost::StepTicks& ticks, VisitPlan& plan)
       : layout_(layout), line_shift_(line_shift), ticks_(ticks), plan_(plan) {}
 
   void begin() {
@@ -85,7 +85,7 @@ class Planner {
  private:
   const memory::Layout& layout_;
   unsigned line_shift_;
-  const StepTicks& ticks_;
+  const cost::StepTicks& ticks_;
   VisitPlan& plan_;
   std::size_t begin_ = 0;
   VisitCounts counts_;
@@ -94,8 +94,9 @@ class Planner {
 
 }  // namespace
 
-VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout, std::span<const std::uint32_t> rank,
-                      unsigned line_shift, const StepTicks& ticks) {
+VisitPlan plan_visits(const program::WorkLog& log, const memory::Layout& layout,
+                      std::span<const std::uint32_t> rank, unsigned line_shift,
+                      const cost::StepTicks& ticks) {
   const accel::Topology& topology = log.topology;
   VisitPlan plan;
   plan.visits.reserve(topology.nodes.size());
@@ -126,13 +127,14 @@ VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout, std::spa
   return plan;
 }
 
-void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics) {
+void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes,
+                cost::NodeStatistics& statistics) {
   const auto of = [&](VisitCount what) { return std::int64_t{counts.of(what)}; };
   const auto add_hits = [&](memory::RecordKind kind, VisitCount what) {
     statistics.references.hits[static_cast<std::size_t>(kind)] += of(what);
   };
   const std::int64_t tests = of(VisitCount::test) + of(VisitCount::sphere_test) + of(VisitCount::cone_test);
-  StepCounts& steps = statistics.steps;
+  cost::StepCounts& steps = statistics.steps;
   steps.branches += visits - of(VisitCount::leaf);
   steps.leaves += of(VisitCount::leaf);
   steps.lists += of(VisitCount::list);
@@ -145,4 +147,4 @@ void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes,
   add_hits(memory::RecordKind::primitive, VisitCount::primitive_line);
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

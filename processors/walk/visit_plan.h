@@ -13,7 +13,7 @@
 #include "processors/cost/step_time.h"
 #include "processors/program/work_log.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The counts of one visit. A visit without `leaf` is one to a branch; `test` counts triangles, cone_test
 /// cylinders too. Counts are summed in 16-bit lanes, four to a word, which most_summed_visits visits cannot
@@ -91,11 +91,12 @@ inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
 
 /// The plan, or an empty one when the tree has more than most_planned_lines lines. `rank` is as in
 /// ReplayInput::node_rank.
-[[nodiscard]] VisitPlan plan_visits(const WorkLog& log, const memory::Layout& layout,
+[[nodiscard]] VisitPlan plan_visits(const program::WorkLog& log, const memory::Layout& layout,
                                     std::span<const std::uint32_t> rank, unsigned line_shift,
-                                    const StepTicks& ticks);
+                                    const cost::StepTicks& ticks);
 
 /// Adds `visits` visits, all of whose lines hit, with the sum of their counts to a node's statistics.
-void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes, NodeStatistics& statistics);
+void add_visits(const VisitCounts& counts, std::uint32_t visits, bool mailboxes,
+                cost::NodeStatistics& statistics);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

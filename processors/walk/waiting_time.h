@@ -5,7 +5,7 @@
 
 #include "memory/interconnect.h"
 
-namespace marti::processors {
+namespace marti::processors::walk {
 
 /// The last `waited` ticks of a read. Its parts count as if they came in this order: wait for the
 /// interconnect, transfer, wait for the bank, access of the bank; whole parts are counted from the end.
@@ -34,4 +34,4 @@ namespace marti::processors {
   return service.wait_interconnect + service.transfer + service.wait_bank + service.bank == 0;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::walk

@@ -10,7 +10,7 @@
 #include "sim/nearest.h"
 #include "studies/cli/command_tree.h"
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::string command_error(const CLI::App& app, const CLI::ParseError& error,
   return reached.name + ": " + error.what();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

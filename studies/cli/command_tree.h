@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 /// Whether the option takes the word after it as its value.
 [[nodiscard]] inline bool takes_value(const CLI::Option& option) {
@@ -28,4 +28,4 @@ namespace marti::studies {
   return nullptr;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

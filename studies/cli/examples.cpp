@@ -7,7 +7,7 @@
 #include "sim/error.h"
 #include "studies/cli/command_tree.h"
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 namespace {
 
@@ -91,4 +91,4 @@ void add_below(CLI::App& app, const std::string& words) {
 
 void add_examples(CLI::App& app) { add_below(app, ""); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

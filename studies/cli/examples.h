@@ -3,9 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 /// Gives each command below `app` its examples, as the end of its help.
 void add_examples(CLI::App& app);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -97,7 +97,7 @@ struct RunArguments {
 };
 
 // `exact` has a meter.
-void run_within_command(const RunArguments& arguments, sim::Config& config, studies::RunOptions exact) {
+void run_within_command(const RunArguments& arguments, sim::Config& config, studies::run::RunOptions exact) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
   }
@@ -108,55 +108,55 @@ void run_within_command(const RunArguments& arguments, sim::Config& config, stud
   }
   double tolerance = 0.0;
   try {
-    tolerance = studies::parse_tolerance(arguments.within);
+    tolerance = studies::estimate::parse_tolerance(arguments.within);
   } catch (const sim::UserError& error) {
     throw sim::UserError("--within: " + std::string(error.what()));
   }
-  std::optional<studies::ShownMeter> shown(std::in_place, *exact.meter);
-  const std::string text = studies::run_within(config, tolerance, arguments.json, std::move(exact));
+  std::optional<studies::progress::ShownMeter> shown(std::in_place, *exact.meter);
+  const std::string text = studies::estimate::run_within(config, tolerance, arguments.json, std::move(exact));
   shown.reset();  // before anything is printed
   print(text);
 }
 
 void run_command(const RunArguments& arguments) {
-  studies::require_config_file(arguments.config);
-  sim::Schema schema = studies::run_schema();
-  studies::declare_price_keys(schema);
+  studies::keys::require_config_file(arguments.config);
+  sim::Schema schema = studies::run::run_schema();
+  studies::keys::declare_price_keys(schema);
   sim::Config config = sim::Config::from_file(schema, arguments.config, arguments.assignments);
-  studies::RunOptions options;
+  studies::run::RunOptions options;
   options.directory = arguments.directory;
-  options.keep = studies::KeptItems(arguments.keep);
-  options.what_helps = arguments.no_what_helps ? studies::Measuring::none
-                       : arguments.what_helps  ? studies::Measuring::all
-                                               : studies::Measuring::within_budget;
-  options.prices = studies::read_given_prices(config);
+  options.keep = studies::run::KeptItems(arguments.keep);
+  options.what_helps = arguments.no_what_helps ? studies::helps::Measuring::none
+                       : arguments.what_helps  ? studies::helps::Measuring::all
+                                               : studies::helps::Measuring::within_budget;
+  options.prices = studies::keys::read_given_prices(config);
   sim::WorkMeter meter;
   options.meter = &meter;
   if (!arguments.within.empty()) {
     run_within_command(arguments, config, std::move(options));
     return;
   }
-  const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
+  const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::load_image_library();
+    studies::host::load_image_library();
   }
-  std::optional<studies::ShownMeter> shown(std::in_place, meter);
-  const studies::RunResult result = studies::run(config, std::move(options));
-  const studies::PlanVerdict verdict =
-      arguments.verify_plan ? studies::verify_plan(result) : studies::PlanVerdict();
+  std::optional<studies::progress::ShownMeter> shown(std::in_place, meter);
+  const studies::run::RunResult result = studies::run::run(config, std::move(options));
+  const studies::run::PlanVerdict verdict =
+      arguments.verify_plan ? studies::run::verify_plan(result) : studies::run::PlanVerdict();
   shown.reset();  // before anything is printed
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
-  studies::WrittenRun written;
+  studies::show::WrittenRun written;
   if (!arguments.directory.empty()) {
-    written = studies::write_output(result, arguments.directory);
+    written = studies::show::write_output(result, arguments.directory);
   }
   if (arguments.json) {
-    print(written.json.empty() ? studies::json_of(result) : written.json);
+    print(written.json.empty() ? studies::run::json_of(result) : written.json);
     return;
   }
-  std::string text = studies::summary_of(result) + verdict.text;
+  std::string text = studies::run::summary_of(result) + verdict.text;
   for (const std::filesystem::path& file : written.files) {
     text += "wrote         " + file.string() + "\n";
   }
@@ -183,31 +183,31 @@ std::string no_empty_file(const std::string& name) {
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
   if (!arguments.config.empty()) {
-    studies::require_config_file(arguments.config);
+    studies::keys::require_config_file(arguments.config);
   }
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
-  const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
+  const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::load_image_library();
+    studies::host::load_image_library();
   }
   sim::WorkMeter meter;
-  std::optional<studies::ShownMeter> shown(std::in_place, meter);
-  const studies::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
+  std::optional<studies::progress::ShownMeter> shown(std::in_place, meter);
+  const studies::tables::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
   shown.reset();  // before anything is printed
   std::string text = output.report;
   if (!output.host_report.empty()) {
     text += "\n" + output.host_report;
   }
-  for (const studies::StudyImage& image : output.images) {
-    if (const std::string note = studies::note_of_infinities(image.image); !note.empty()) {
+  for (const studies::tables::StudyImage& image : output.images) {
+    if (const std::string note = studies::host::note_of_infinities(image.image); !note.empty()) {
       text += "note: " + image.name + ": " + note + "\n";
     }
   }
   if (!arguments.directory.empty()) {
     text += "\n";
-    for (const std::filesystem::path& file : studies::write_study(output, arguments.directory)) {
+    for (const std::filesystem::path& file : studies::tables::write_study(output, arguments.directory)) {
       text += "wrote " + file.string() + "\n";
     }
   }
@@ -244,19 +244,22 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
-  operations->callback([&] { run_study(arguments, studies::run_schema(), studies::run_operations); });
-  paper->callback([&] { run_study(arguments, studies::paper_schema(), studies::run_paper); });
-  frames->callback([&] { run_study(arguments, studies::run_schema(), studies::run_frames); });
-  schemes->callback([&] { run_study(arguments, studies::schemes_schema(), studies::run_schemes); });
-  error->callback([&] { run_study(arguments, studies::error_schema(), studies::run_error); });
+  operations->callback(
+      [&] { run_study(arguments, studies::run::run_schema(), studies::operations::run_operations); });
+  paper->callback([&] { run_study(arguments, studies::paper::paper_schema(), studies::paper::run_paper); });
+  frames->callback([&] { run_study(arguments, studies::run::run_schema(), studies::frames::run_frames); });
+  schemes->callback(
+      [&] { run_study(arguments, studies::schemes::schemes_schema(), studies::schemes::run_schemes); });
+  error->callback([&] { run_study(arguments, studies::error::error_schema(), studies::error::run_error); });
   stability->callback([&] {
-    run_study(arguments, studies::stability_schema(), [](sim::Config& config, sim::WorkMeter* meter) {
-      return studies::run_stability(config, meter);
-    });
+    run_study(arguments, studies::stability::stability_schema(),
+              [](sim::Config& config, sim::WorkMeter* meter) {
+                return studies::stability::run_stability(config, meter);
+              });
   });
 }
 
-void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
+void add_sweep_command(CLI::App& app, studies::cli::SweepArguments& arguments) {
   CLI::App* sweep =
       app.add_subcommand("sweep",
                          "Times every machine of a configuration's [sweep] or of axes given here; "
@@ -291,7 +294,7 @@ void add_sweep_command(CLI::App& app, studies::SweepArguments& arguments) {
   sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
   sweep->add_flag("--quiet", arguments.quiet, "no progress");
   sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
-  sweep->callback([&] { studies::sweep_command(arguments, print); });
+  sweep->callback([&] { studies::cli::sweep_command(arguments, print); });
 }
 
 struct TraceArguments {
@@ -300,7 +303,7 @@ struct TraceArguments {
   std::string directory;
   std::string format = "din";
   std::string limit = "4 GiB";
-  studies::TraceOptions options;
+  studies::run::TraceOptions options;
 };
 
 void add_trace_command(CLI::App& app, TraceArguments& arguments) {
@@ -327,12 +330,12 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     } catch (const sim::UserError& error) {
       throw sim::UserError("--limit: " + std::string(error.what()));
     }
-    studies::require_config_file(arguments.config);
+    studies::keys::require_config_file(arguments.config);
     sim::Config config =
-        sim::Config::from_file(studies::run_schema(), arguments.config, arguments.assignments);
-    const sim::MadeDirectory made = studies::prepare_output(arguments.directory);
+        sim::Config::from_file(studies::run::run_schema(), arguments.config, arguments.assignments);
+    const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
     print(sim::with_places(
-        config, [&] { return studies::write_traces(config, arguments.options, arguments.directory); }));
+        config, [&] { return studies::run::write_traces(config, arguments.options, arguments.directory); }));
   });
 }
 
@@ -340,18 +343,18 @@ struct CompareArguments {
   std::string a;
   std::string b;
   std::string page;
-  studies::CompareOptions options;
+  studies::compare::CompareOptions options;
 };
 
 void compare_command(const CompareArguments& arguments) {
   if (arguments.page.empty()) {
-    print(studies::compare_results(arguments.a, arguments.b, arguments.options));
+    print(studies::compare::compare_results(arguments.a, arguments.b, arguments.options));
     return;
   }
-  studies::check_page_target(arguments.page);
-  studies::ComparisonPage page;
-  std::string text = studies::compare_results(arguments.a, arguments.b, arguments.options, &page);
-  studies::write_page(arguments.page, studies::html_of(page));
+  studies::tables::check_page_target(arguments.page);
+  studies::compare::ComparisonPage page;
+  std::string text = studies::compare::compare_results(arguments.a, arguments.b, arguments.options, &page);
+  studies::tables::write_page(arguments.page, studies::compare::html_of(page));
   print(arguments.options.json ? text : text + "\nwrote " + arguments.page + "\n");
 }
 
@@ -370,7 +373,7 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->callback([&] { compare_command(arguments); });
 }
 
-void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
+void add_report_command(CLI::App& app, studies::report::ReportArguments& arguments) {
   CLI::App* report = app.add_subcommand(
       "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
   report
@@ -391,10 +394,10 @@ void add_report_command(CLI::App& app, studies::ReportArguments& arguments) {
       ->add_option("--budget", arguments.budget,
                    "of a sweep: the price that a machine may have; the best within it is named")
       ->type_name("COST");
-  report->callback([&] { studies::report_command(arguments, print); });
+  report->callback([&] { studies::report::report_command(arguments, print); });
 }
 
-void add_explore_command(CLI::App& app, studies::ExploreArguments& arguments) {
+void add_explore_command(CLI::App& app, studies::explore::ExploreArguments& arguments) {
   CLI::App* explore = app.add_subcommand(
       "explore",
       "A page on this computer: every setting of a machine is a control, simulated as it is moved");
@@ -411,7 +414,7 @@ void add_explore_command(CLI::App& app, studies::ExploreArguments& arguments) {
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 1e6));
   explore->add_flag("--no-browser", arguments.no_browser, "only print the address");
-  explore->callback([&] { studies::explore_command(arguments, print); });
+  explore->callback([&] { studies::explore::explore_command(arguments, print); });
 }
 
 void list_scenes() {
@@ -436,18 +439,18 @@ struct SceneArguments {
 // There is no configuration that could set a memory limit: it is the host's default.
 scenes::OpenOptions options_of(const SceneArguments& arguments) {
   scenes::OpenOptions options{{}, arguments.file};
-  options.file.size_first = studies::size_of_image;
+  options.file.size_first = studies::host::size_of_image;
   options.file.memory = sim::MemoryBudget(sim::default_memory_limit());
   return options;
 }
 
 scenes::Scene open(const SceneArguments& arguments) {
-  return scenes::open_scene(arguments.source, options_of(arguments), studies::decode_image);
+  return scenes::open_scene(arguments.source, options_of(arguments), studies::host::decode_image);
 }
 
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
-      scenes::open_animated(arguments.source, options_of(arguments), studies::decode_image);
+      scenes::open_animated(arguments.source, options_of(arguments), studies::host::decode_image);
   const scenes::Scene pose = scene.asked_for(arguments.file.time, arguments.source);
   const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
   return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
@@ -483,7 +486,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
     }
     scenes::Scene source = open(arguments);
     scenes::tessellate(source);
-    scenes::export_glb(source, arguments.target, studies::encode_png);
+    scenes::export_glb(source, arguments.target, studies::host::encode_png);
     std::string text = "wrote " + arguments.target + "\n";
     for (const std::string& note : source.notes) {
       text += "note: " + note + "\n";
@@ -531,13 +534,13 @@ int parse_and_run(int argc, char** argv) {
       ->excludes(what_helps);
   run->callback([&] { run_command(run_arguments); });
 
-  studies::ExploreArguments explore_arguments;
+  studies::explore::ExploreArguments explore_arguments;
   add_explore_command(app, explore_arguments);
 
   StudyArguments study_arguments;
   add_study_commands(app, study_arguments);
 
-  studies::SweepArguments sweep_arguments;
+  studies::cli::SweepArguments sweep_arguments;
   add_sweep_command(app, sweep_arguments);
 
   TraceArguments trace_arguments;
@@ -546,21 +549,21 @@ int parse_and_run(int argc, char** argv) {
   CompareArguments compare_arguments;
   add_compare_command(app, compare_arguments);
 
-  studies::ReportArguments report_arguments;
+  studies::report::ReportArguments report_arguments;
   add_report_command(app, report_arguments);
 
-  studies::ReferenceArguments reference_arguments;
-  studies::add_reference_commands(app, reference_arguments, print);
+  studies::cli::ReferenceArguments reference_arguments;
+  studies::cli::add_reference_commands(app, reference_arguments, print);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
-  studies::add_examples(app);
+  studies::cli::add_examples(app);
 
   // The shells' completion scripts call the program this way. The words to complete may be options, which
   // CLI11 must not parse as options of this call.
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "__complete") {
-    print(studies::completions(app, studies::all_keys(), std::span(words).subspan(1)));
+    print(studies::cli::completions(app, studies::cli::all_keys(), std::span(words).subspan(1)));
     return done;
   }
   if (words.empty()) {
@@ -574,7 +577,7 @@ int parse_and_run(int argc, char** argv) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    throw sim::UserError(studies::command_error(app, error, words));
+    throw sim::UserError(studies::cli::command_error(app, error, words));
   }
   return done;
 }
@@ -587,12 +590,12 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is then an error of writing, like a full disk
   // A rank that ends also ends the other ranks of its job.
   const auto end = [](int status) {
-    marti::studies::end_all_ranks(status);
+    marti::studies::sweep::end_all_ranks(status);
     return status;
   };
   try {
-    marti::studies::end_cleanly_on_signals();
-    marti::studies::limit_threads_to_available();
+    marti::studies::host::end_cleanly_on_signals();
+    marti::studies::host::limit_threads_to_available();
     return parse_and_run(argc, argv);
   } catch (const marti::sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.

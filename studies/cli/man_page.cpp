@@ -9,7 +9,7 @@
 #include "studies/cli/command_tree.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 namespace {
 
@@ -156,4 +156,4 @@ std::string man_page(const CLI::App& app) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -7,9 +7,9 @@ namespace CLI {
 class App;
 }
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 /// The page in the language of man(7). The same program gives the same bytes; the page has no date.
 [[nodiscard]] std::string man_page(const CLI::App& app);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -23,16 +23,16 @@
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 sim::Schema all_keys() {
-  sim::Schema schema = run_schema();
-  declare_paper_keys(schema);
-  declare_schemes_keys(schema);
-  declare_error_keys(schema);
-  declare_rendering_error_keys(schema);
-  declare_stability_keys(schema);
-  declare_sweep_keys(schema);
+  sim::Schema schema = run::run_schema();
+  paper::declare_paper_keys(schema);
+  schemes::declare_schemes_keys(schema);
+  error::declare_error_keys(schema);
+  error::declare_rendering_error_keys(schema);
+  stability::declare_stability_keys(schema);
+  sweep::declare_sweep_keys(schema);
   return schema;
 }
 
@@ -72,16 +72,16 @@ void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (
       if (!arguments.key.empty()) {
         throw sim::UserError("config: --markdown prints all keys; leave out " + arguments.key);
       }
-      print(sim::list_keys_as_markdown(all_keys()) + combinations_as_markdown());
+      print(sim::list_keys_as_markdown(all_keys()) + keys::combinations_as_markdown());
     } else {
-      print(arguments.json ? keys_as_json(all_keys(), arguments.key)
-                           : keys_as_text(all_keys(), arguments.key));
+      print(arguments.json ? show::keys_as_json(all_keys(), arguments.key)
+                           : show::keys_as_text(all_keys(), arguments.key));
     }
   });
   CLI::App* figures = app.add_subcommand("figures", "Prints every figure of a machine and of a frame");
   figures->add_flag("--markdown", arguments.markdown, "as Markdown, as in docs/figures.md");
   figures->callback([&arguments, print] {
-    print(arguments.markdown ? list_figures_as_markdown() : list_figures_as_text());
+    print(arguments.markdown ? show::list_figures_as_markdown() : show::list_figures_as_text());
   });
   CLI::App* completion =
       app.add_subcommand("completion", "Prints the script that completes commands in a shell");
@@ -100,4 +100,4 @@ void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

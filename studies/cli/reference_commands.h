@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 /// Every key of every command.
 [[nodiscard]] sim::Schema all_keys();
@@ -27,4 +27,4 @@ struct ReferenceArguments {
 /// Adds the commands, which print by `print`. `arguments` must live as long as `app` does.
 void add_reference_commands(CLI::App& app, ReferenceArguments& arguments, void (*print)(const std::string&));
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -13,7 +13,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/run/plan/plan.h"
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 std::string_view bash_completion();
 std::string_view fish_completion();
@@ -88,12 +88,12 @@ void add_values(std::string_view type, const sim::Schema& schema, std::string_vi
     candidates.ask_shell(files);
   } else if (type == "ITEM") {
     candidates.add("all");
-    for (const std::string_view item : plan_item_names) {
+    for (const std::string_view item : run::plan_item_names) {
       candidates.add(item);
     }
   } else if (type == "METRIC") {
-    for (const auto& figures : {derived_figures(), counted_figures()}) {
-      for (const FigureEntry& figure : figures) {
+    for (const auto& figures : {figures::derived_figures(), figures::counted_figures()}) {
+      for (const figures::FigureEntry& figure : figures) {
         candidates.add(figure.name);
       }
     }
@@ -189,4 +189,4 @@ std::string completions(const CLI::App& app, const sim::Schema& schema, std::spa
   return candidates.text();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -14,7 +14,7 @@ namespace marti::sim {
 class Schema;
 }
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 /// The script for "bash" or "zsh"; empty for another name.
 [[nodiscard]] std::string_view completion_script(std::string_view shell);
@@ -26,4 +26,4 @@ namespace marti::studies {
 [[nodiscard]] std::string completions(const CLI::App& app, const sim::Schema& schema,
                                       std::span<const std::string> words);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::cli {
 
 struct SweepArguments {
   std::string config;
@@ -23,4 +23,4 @@ struct SweepArguments {
 /// Runs the command; `print` writes to standard output. Throws UserError.
 void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&));
 
-}  // namespace marti::studies
+}  // namespace marti::studies::cli

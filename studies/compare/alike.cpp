@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists) {
   std::map<std::string, std::vector<const Difference*>> by_name;
@@ -21,7 +21,7 @@ SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists) {
                          return other->a == first.a && other->b == first.b;
                        });
     const auto both = std::find_if(differences.begin(), differences.end(), [](const Difference* difference) {
-      return difference->a != Cell() && difference->b != Cell();
+      return difference->a != tables::Cell() && difference->b != tables::Cell();
     });
     (alike ? found.alike : found.varied).push_back(both == differences.end() ? first : **both);
   }
@@ -34,4 +34,4 @@ SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists) {
   return found;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -6,7 +6,7 @@
 
 #include "studies/compare/differences.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 struct SharedDifferences {
   std::vector<Difference> alike;   ///< that every list has, with the same values; by name
@@ -16,4 +16,4 @@ struct SharedDifferences {
 /// Takes the differences that all lists share out of them.
 [[nodiscard]] SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -14,7 +14,7 @@
 #include "studies/compare/verdict.h"
 #include "studies/tables/result_directory.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -34,14 +34,14 @@ constexpr std::string_view expected =
 Target target_of(const std::string& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) {
-    const fs::path file = results_in(name, expected);
+    const fs::path file = tables::results_in(name, expected);
     return {file.extension() == ".json" ? Target::Kind::run : Target::Kind::sweep, file, 0};
   }
-  if (is_there(name)) {
+  if (tables::is_there(name)) {
     const bool sweep = fs::path(name).extension() == ".sqlite";
     return {sweep ? Target::Kind::sweep : Target::Kind::run, name, 0};
   }
-  if (const std::optional<PointName> point = point_named(name)) {
+  if (const std::optional<tables::PointName> point = tables::point_named(name)) {
     return {Target::Kind::point, point->store, point->ordinal};
   }
   throw sim::UserError(name + ": there is no such file or directory; " + std::string(expected));
@@ -49,7 +49,7 @@ Target target_of(const std::string& name) {
 
 ComparedResult read(const Target& target, const std::string& name) {
   return target.kind == Target::Kind::run ? read_run(target.file, name)
-                                          : read_point(SweepReader(target.file), target.point, name);
+                                          : read_point(sweep::SweepReader(target.file), target.point, name);
 }
 
 }  // namespace
@@ -87,4 +87,4 @@ std::string compare_results(const std::string& a, const std::string& b, const Co
   return options.json ? differences_json(pair, options.all) : differences_text(pair, options.all);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 struct CompareOptions {
   bool json = false;  ///< for programs
@@ -20,4 +20,4 @@ struct ComparisonPage;
 [[nodiscard]] std::string compare_results(const std::string& a, const std::string& b,
                                           const CompareOptions& options = {}, ComparisonPage* page = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

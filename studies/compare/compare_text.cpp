@@ -13,16 +13,16 @@
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 // The value of a setting as JSON has it; null where the machine does not use the setting.
-Json typed(const std::string& key, const Cell& value) {
+Json typed(const std::string& key, const tables::Cell& value) {
   const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? Json() : setting_value(key, *text);
+  return text == nullptr ? Json() : keys::setting_value(key, *text);
 }
 
 Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
@@ -33,14 +33,14 @@ std::string lines_of(const std::vector<std::vector<std::string>>& rows) {
   for (const std::vector<std::string>& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], width_of(row[i]));
+      widths[i] = std::max(widths[i], tables::width_of(row[i]));
     }
   }
   std::string text;
   for (const std::vector<std::string>& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - width_of(row[i]), ' ');
+      const std::string padding(widths[i] - tables::width_of(row[i]), ' ');
       line += "  " + (i == 0 ? row[i] + padding : padding + row[i]);
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
@@ -55,8 +55,8 @@ std::string figure_lines(const std::vector<Difference>& figures, bool all) {
   for (std::size_t i = 0; i < shown; ++i) {
     const Difference& figure = figures[i];
     const std::string unit = unit_of_figure(figure.name);
-    rows.push_back({printable(figure.name), printable(figure_text(figure.a, unit, "-")),
-                    printable(figure_text(figure.b, unit, "-")), change_of(figure)});
+    rows.push_back({printable(figure.name), printable(tables::figure_text(figure.a, unit, "-")),
+                    printable(tables::figure_text(figure.b, unit, "-")), change_of(figure)});
   }
   return lines_of(rows) + and_more(shown, figures.size());
 }
@@ -65,8 +65,9 @@ std::string time_lines(const ComparedPair& pair) {
   std::vector<std::vector<std::string>> rows = {{"mean of a node", "A", "B", "change", "of A's frame"}};
   const auto end = static_cast<double>(frame_time(pair.a));
   for (const ActivityTime& time : pair.times) {
-    rows.push_back({time.activity, seconds(time.mean_a), seconds(time.mean_b),
-                    signed_seconds(std::llround(time.change)), signed_percent(time.change / end)});
+    rows.push_back({time.activity, tables::seconds(time.mean_a), tables::seconds(time.mean_b),
+                    tables::signed_seconds(std::llround(time.change)),
+                    tables::signed_percent(time.change / end)});
   }
   return lines_of(rows);
 }
@@ -90,24 +91,24 @@ std::string printable(std::string text) {
 }
 
 std::string differ(std::size_t number, std::string_view what) {
-  return counted(number, what) + (number == 1 ? " differs" : " differ");
+  return tables::counted(number, what) + (number == 1 ? " differs" : " differ");
 }
 
-std::string setting_text(const Cell& value) {
+std::string setting_text(const tables::Cell& value) {
   const auto* text = std::get_if<std::string>(&value);
-  return printable(text == nullptr ? short_text(value, "-") : plain_setting(*text));
+  return printable(text == nullptr ? tables::short_text(value, "-") : keys::plain_setting(*text));
 }
 
-std::optional<double> setting_number(const std::string& key, const Cell& value) {
+std::optional<double> setting_number(const std::string& key, const tables::Cell& value) {
   const Json json = typed(key, value);
   return json.is_number() && std::isfinite(json.get<double>()) ? std::optional(json.get<double>())
                                                                : std::nullopt;
 }
 
-std::string values_text(const std::vector<Difference>& settings, Cell Difference::*side, bool all) {
+std::string values_text(const std::vector<Difference>& settings, tables::Cell Difference::*side, bool all) {
   std::string text;
   for (const Difference& setting : settings) {
-    if (all || (setting.a != Cell() && setting.b != Cell())) {
+    if (all || (setting.a != tables::Cell() && setting.b != tables::Cell())) {
       text += (text.empty() ? "" : ", ") + printable(setting.name) + " " + setting_text(setting.*side);
     }
   }
@@ -116,7 +117,7 @@ std::string values_text(const std::vector<Difference>& settings, Cell Difference
 
 std::string and_more(std::size_t shown, std::size_t of) {
   return shown < of ? fmt::format("  and {} more: --all lists them\n",
-                                  grouped(static_cast<std::int64_t>(of - shown)))
+                                  tables::grouped(static_cast<std::int64_t>(of - shown)))
                     : std::string();
 }
 
@@ -156,18 +157,18 @@ std::string differences_text(const ComparedPair& pair, bool all) {
   text += figure_lines(found.texts, true);
   text += figure_lines(found.numbers, all);
   if (!found.one_side.empty()) {
-    fmt::format_to(out, "\nof one only    {}\n", counted(found.one_side.size(), "figure"));
+    fmt::format_to(out, "\nof one only    {}\n", tables::counted(found.one_side.size(), "figure"));
     text += figure_lines(found.one_side, all);
   }
   if (all && !found.equal.empty()) {
-    fmt::format_to(out, "\nequal          {}\n", counted(found.equal.size(), "figure"));
+    fmt::format_to(out, "\nequal          {}\n", tables::counted(found.equal.size(), "figure"));
     text += figure_lines(found.equal, true);
   }
   return text;
 }
 
 nlohmann::ordered_json json_of(const Difference& figure) {
-  Json object = {{"name", figure.name}, {"a", json_of(figure.a)}, {"b", json_of(figure.b)}};
+  Json object = {{"name", figure.name}, {"a", tables::json_of(figure.a)}, {"b", tables::json_of(figure.b)}};
   if (const std::string unit = unit_of_figure(figure.name); !unit.empty()) {
     object["unit"] = unit;
   }
@@ -212,7 +213,7 @@ std::string differences_json(const ComparedPair& pair, bool all) {
   if (all) {
     object["equal"] = json_of(found.equal);
   }
-  return json_text(object);
+  return tables::json_text(object);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

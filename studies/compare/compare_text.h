@@ -9,7 +9,7 @@
 
 #include "studies/compare/differences.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 struct ComparedPair;
 
@@ -24,14 +24,14 @@ inline constexpr std::size_t most_lines = 20;
 
 /// A setting's value as people write it, a text without the quotation marks that it has in a TOML file; "-"
 /// where the machine does not use the setting.
-[[nodiscard]] std::string setting_text(const Cell& value);
+[[nodiscard]] std::string setting_text(const tables::Cell& value);
 
 /// A setting that has a number: a size in bytes, a frequency in Hz and so on.
-[[nodiscard]] std::optional<double> setting_number(const std::string& key, const Cell& value);
+[[nodiscard]] std::optional<double> setting_number(const std::string& key, const tables::Cell& value);
 
 /// "cache.size 4 KiB, machine.nodes 8": the values of one side. A setting that only one side has is listed if
 /// `all`; it follows from another one, as the ways of a cache from its being there.
-[[nodiscard]] std::string values_text(const std::vector<Difference>& settings, Cell Difference::*side,
+[[nodiscard]] std::string values_text(const std::vector<Difference>& settings, tables::Cell Difference::*side,
                                       bool all);
 
 /// "and 5 more: --all lists them", or nothing.
@@ -53,4 +53,4 @@ inline constexpr std::size_t most_lines = 20;
 [[nodiscard]] nlohmann::ordered_json json_of(const Difference& figure);
 [[nodiscard]] nlohmann::ordered_json json_of(const std::vector<Difference>& figures);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -12,15 +12,15 @@
 #include "studies/report/model/report_data.h"
 #include "studies/report/page/sorted_table.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// A part of the page below a heading: sentences, then charts, then tables.
 struct ComparisonPart {
   std::string id;     ///< of its element, a plain word
   std::string title;  ///< for people
   std::vector<std::string> sentences;
-  std::vector<ReportChart> charts;
-  std::vector<SortedTable> tables;
+  std::vector<report::ReportChart> charts;
+  std::vector<report::SortedTable> tables;
 };
 
 struct ComparisonPage {
@@ -35,4 +35,4 @@ struct ComparisonPage {
 /// The HTML. UserError when the program was built without the scripts that draw charts.
 [[nodiscard]] std::string html_of(const ComparisonPage& page);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -6,7 +6,7 @@
 
 #include "processors/cost/accounting.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::int64_t nodes_of(const ComparedResult& result) {
   const std::optional<std::int64_t> nodes = count_of(result, "nodes");
   const std::optional<std::int64_t> end = count_of(result, "end");
   std::int64_t sum = 0;
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     const std::optional<std::int64_t> time = count_of(result, "time_" + std::string(activity));
     if (!time || __builtin_add_overflow(sum, *time, &sum)) {
       return 0;
@@ -49,7 +49,7 @@ std::vector<ActivityTime> activity_times(const ComparedResult& a, const Compared
   if (nodes_a == 0 || nodes_b == 0) {
     return times;
   }
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     ActivityTime time;
     time.activity = activity;
     time.a = *count_of(a, "time_" + time.activity);
@@ -68,4 +68,4 @@ std::vector<ActivityTime> activity_times(const ComparedResult& a, const Compared
   return times;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -8,7 +8,7 @@
 
 #include "studies/compare/figures.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// The time of a machine's nodes in one activity. A mean of a node is the nodes' time by their number.
 struct ActivityTime {
@@ -25,4 +25,4 @@ struct ActivityTime {
 /// frame time (somebody has changed the file).
 [[nodiscard]] std::vector<ActivityTime> activity_times(const ComparedResult& a, const ComparedResult& b);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -6,7 +6,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -42,8 +42,8 @@ void sort_by_size(std::vector<Difference>& numbers) {
 }  // namespace
 
 std::optional<double> Difference::relative() const {
-  const std::optional<double> from = number_of(a);
-  const std::optional<double> to = number_of(b);
+  const std::optional<double> from = tables::number_of(a);
+  const std::optional<double> to = tables::number_of(b);
   if (!from || !to) {
     return std::nullopt;
   }
@@ -52,8 +52,8 @@ std::optional<double> Difference::relative() const {
 }
 
 std::string change_of(const Difference& difference) {
-  const std::optional<double> from = number_of(difference.a);
-  const std::optional<double> to = number_of(difference.b);
+  const std::optional<double> from = tables::number_of(difference.a);
+  const std::optional<double> to = tables::number_of(difference.b);
   if (!from || !to) {
     return "";
   }
@@ -61,7 +61,7 @@ std::string change_of(const Difference& difference) {
     return *to == 0.0 ? "" : "from 0";
   }
   const double change = (*to - *from) / std::abs(*from);
-  return *from > 0.0 ? change_percent(change) : signed_percent(change);
+  return *from > 0.0 ? tables::change_percent(change) : tables::signed_percent(change);
 }
 
 Differences differences_of(const ComparedResult& a, const ComparedResult& b) {
@@ -73,19 +73,21 @@ Differences differences_of(const ComparedResult& a, const ComparedResult& b) {
     if (from != nullptr && to != nullptr && *from == *to) {
       ++found.equal_settings;
     } else {
-      found.settings.push_back(
-          {key, from == nullptr ? Cell() : Cell(*from), to == nullptr ? Cell() : Cell(*to)});
+      found.settings.push_back({key, from == nullptr ? tables::Cell() : tables::Cell(*from),
+                                to == nullptr ? tables::Cell() : tables::Cell(*to)});
     }
   });
-  merge(a.figures, b.figures, [&](const std::string& name, const Cell* from, const Cell* to) {
-    Difference difference{name, from == nullptr ? Cell() : *from, to == nullptr ? Cell() : *to};
+  merge(a.figures, b.figures, [&](const std::string& name, const tables::Cell* from, const tables::Cell* to) {
+    Difference difference{name, from == nullptr ? tables::Cell() : *from,
+                          to == nullptr ? tables::Cell() : *to};
     if (from == nullptr || to == nullptr) {
       found.one_side.push_back(std::move(difference));
     } else if (*from == *to) {
       found.equal.push_back(std::move(difference));
     } else if (difference.relative()) {
       // 2 and 2.0 are the same number.
-      (number_of(*from) == number_of(*to) && from->index() != to->index() ? found.equal : found.numbers)
+      (tables::number_of(*from) == tables::number_of(*to) && from->index() != to->index() ? found.equal
+                                                                                          : found.numbers)
           .push_back(std::move(difference));
     } else {
       found.texts.push_back(std::move(difference));
@@ -95,4 +97,4 @@ Differences differences_of(const ComparedResult& a, const ComparedResult& b) {
   return found;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

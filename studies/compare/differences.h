@@ -8,13 +8,13 @@
 
 #include "studies/compare/figures.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// A setting or figure; no value where one side has none.
 struct Difference {
   std::string name;
-  Cell a;
-  Cell b;
+  tables::Cell a;
+  tables::Cell b;
 
   /// |b - a| / max(|a|, |b|), 0 to 2: how much it differs. Of two numbers only.
   [[nodiscard]] std::optional<double> relative() const;
@@ -34,4 +34,4 @@ struct Differences {
 /// The change from a to b for people: "+12.50 %"; "from 0" where a is 0.
 [[nodiscard]] std::string change_of(const Difference& difference);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -13,26 +13,26 @@
 #include "studies/tables/json_table.h"
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-void add(const RunJson& run, const std::string& part, const std::string& prefix, Figures& figures) {
+void add(const tables::RunJson& run, const std::string& part, const std::string& prefix, Figures& figures) {
   for (const auto& [name, value] : run.at(part).items()) {
-    if (const Cell cell = cell_of(value); !std::holds_alternative<std::monostate>(cell)) {
+    if (const tables::Cell cell = tables::cell_of(value); !std::holds_alternative<std::monostate>(cell)) {
       figures[prefix + name] = cell;
     }
   }
 }
 
-ComparedResult compared(const RunJson& run, const std::string& name) {
+ComparedResult compared(const tables::RunJson& run, const std::string& name) {
   ComparedResult result;
   result.name = name;
   const Json& version = run.find("marti.version");
   result.version = version.is_string() ? version.get<std::string>() : "unknown";
-  result.settings = settings_of(run);
+  result.settings = keys::settings_of(run);
   add(run, "figures.frame", "frame.", result.figures);
   add(run, "figures.machine", "", result.figures);
   result.scene_hash = run.text("scene.hash");
@@ -40,44 +40,44 @@ ComparedResult compared(const RunJson& run, const std::string& name) {
   return result;
 }
 
-const FigureEntry* entry_of(std::string_view name) {
+const figures::FigureEntry* entry_of(std::string_view name) {
   constexpr std::string_view of_frame = "frame.";
-  const auto found = [](std::span<const FigureEntry> entries, std::string_view wanted) {
+  const auto found = [](std::span<const figures::FigureEntry> entries, std::string_view wanted) {
     const auto at = std::find_if(entries.begin(), entries.end(),
-                                 [&](const FigureEntry& entry) { return entry.name == wanted; });
+                                 [&](const figures::FigureEntry& entry) { return entry.name == wanted; });
     return at == entries.end() ? nullptr : &*at;
   };
   if (name.starts_with(of_frame)) {
-    return found(frame_figures(), name.substr(of_frame.size()));
+    return found(run::frame_figures(), name.substr(of_frame.size()));
   }
-  const FigureEntry* const counted = found(counted_figures(), name);
-  return counted != nullptr ? counted : found(derived_figures(), name);
+  const figures::FigureEntry* const counted = found(figures::counted_figures(), name);
+  return counted != nullptr ? counted : found(figures::derived_figures(), name);
 }
 
 }  // namespace
 
 ComparedResult read_run(const std::filesystem::path& path, const std::string& name) {
-  return compared(read_run_json(path), name);
+  return compared(tables::read_run_json(path), name);
 }
 
-ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
-  return compared(point_result(sweep, ordinal, name), name);
+ComparedResult read_point(const sweep::SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
+  return compared(sweep::point_result(sweep, ordinal, name), name);
 }
 
-void add_counters(const SweepRow& row, Figures& figures) {
-  for_each_count(counted_figures(), row.counters,
-                 [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+void add_counters(const sweep::SweepRow& row, Figures& figures) {
+  figures::for_each_count(figures::counted_figures(), row.counters,
+                          [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
 }
 
-void add_frame(const FrameRow& row, ComparedResult& result) {
+void add_frame(const sweep::FrameRow& row, ComparedResult& result) {
   Figures& figures = result.figures;
   result.scene_hash = row.scene_hash;
   figures["frame.scene"] = row.scene;
   figures["frame.image_hash"] = row.image_hash;
   figures["frame.hit_hash"] = row.hit_hash;
-  for_each_count(frame_figures(), row.counters, [&figures](const std::string& name, std::int64_t value) {
-    figures["frame." + name] = value;
-  });
+  figures::for_each_count(
+      run::frame_figures(), row.counters,
+      [&figures](const std::string& name, std::int64_t value) { figures["frame." + name] = value; });
 }
 
 std::optional<std::int64_t> integer_figure(const ComparedResult& result, const std::string& name) {
@@ -100,17 +100,17 @@ std::int64_t frame_time(const ComparedResult& result) {
 }
 
 std::string unit_of_figure(std::string_view name) {
-  const FigureEntry* const entry = entry_of(name);
+  const figures::FigureEntry* const entry = entry_of(name);
   return entry == nullptr ? std::string() : entry->unit;
 }
 
 std::string meaning_of_figure(std::string_view name) {
-  const FigureEntry* const entry = entry_of(name);
+  const figures::FigureEntry* const entry = entry_of(name);
   return entry == nullptr ? std::string() : entry->description;
 }
 
 void keep_what_sweeps_have(ComparedResult& result) {
-  for (const FigureEntry& entry : derived_figures()) {
+  for (const figures::FigureEntry& entry : figures::derived_figures()) {
     if (entry.formula->is_relative()) {
       result.figures.erase(entry.name);
     }
@@ -121,4 +121,4 @@ void keep_what_sweeps_have(ComparedResult& result) {
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

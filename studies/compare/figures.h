@@ -11,11 +11,11 @@
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// By the names of the catalogue (`marti figures`), those of the frame behind "frame.". A figure is an
 /// integer, a real or a text (a hash, the scene's name).
-using Figures = std::map<std::string, Cell>;
+using Figures = std::map<std::string, tables::Cell>;
 
 struct ComparedResult {
   std::string name;                             ///< as on the command line
@@ -31,14 +31,14 @@ struct ComparedResult {
 [[nodiscard]] ComparedResult read_run(const std::filesystem::path& file, const std::string& name);
 
 /// A point of a sweep. Throws UserError when it has not been run yet, or there is no such point.
-[[nodiscard]] ComparedResult read_point(const SweepReader& sweep, std::int64_t ordinal,
+[[nodiscard]] ComparedResult read_point(const sweep::SweepReader& sweep, std::int64_t ordinal,
                                         const std::string& name);
 
 /// The counted figures of a row.
-void add_counters(const SweepRow& row, Figures& figures);
+void add_counters(const sweep::SweepRow& row, Figures& figures);
 
 /// The frame: its figures as those of a result are named, and the scene's hash.
-void add_frame(const FrameRow& row, ComparedResult& result);
+void add_frame(const sweep::FrameRow& row, ComparedResult& result);
 
 /// Removes what cannot be compared with a sweep: figures that are measured against another machine, which a
 /// run and a sweep do not choose alike, and settings that a sweep does not keep, because no result depends on
@@ -59,4 +59,4 @@ void keep_what_sweeps_have(ComparedResult& result);
 /// What the catalogue says of it.
 [[nodiscard]] std::string meaning_of_figure(std::string_view name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -36,7 +36,7 @@ bool same_frame(const ComparedResult& a, const ComparedResult& b) {
                                                    "frame.height"};
   const auto value = [](const ComparedResult& result, const char* name) {
     const auto at = result.figures.find(name);
-    return at == result.figures.end() ? Cell() : at->second;
+    return at == result.figures.end() ? tables::Cell() : at->second;
   };
   // Images and hits of two scenes can be equal where they differ in what no ray meets.
   return (a.scene_hash.empty() || b.scene_hash.empty() || a.scene_hash == b.scene_hash) &&
@@ -51,4 +51,4 @@ std::vector<Difference> frame_settings(const std::vector<Difference>& settings) 
   return found;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

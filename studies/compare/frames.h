@@ -6,7 +6,7 @@
 
 #include "studies/compare/differences.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// A setting of what is rendered and how ([scene], [frames], [image], [structure]), not of the machine.
 [[nodiscard]] bool is_frame_setting(std::string_view key);
@@ -19,4 +19,4 @@ namespace marti::studies {
 /// Those of the differences that are settings of the frame.
 [[nodiscard]] std::vector<Difference> frame_settings(const std::vector<Difference>& settings);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -11,51 +11,53 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
-SortedCell setting_cell(const std::string& key, const Cell& value) {
+report::SortedCell setting_cell(const std::string& key, const tables::Cell& value) {
   return {setting_text(value), setting_number(key, value)};
 }
 
 }  // namespace
 
-SortedTable settings_table(const std::string& title, const std::vector<Difference>& settings) {
-  SortedTable table;
+report::SortedTable settings_table(const std::string& title, const std::vector<Difference>& settings) {
+  report::SortedTable table;
   table.title = title;
   table.columns = {{"key", false, "of the configuration"},
                    {"A", false, "value in A; - where the machine does not use it"},
                    {"B", false, "value in B; - where the machine does not use it"},
                    {"meaning", false, ""}};
   for (const Difference& setting : settings) {
-    const std::optional<std::size_t> key = sweep_schema().find(setting.name);
+    const std::optional<std::size_t> key = sweep::sweep_schema().find(setting.name);
     table.rows.push_back({{setting.name, {}},
                           setting_cell(setting.name, setting.a),
                           setting_cell(setting.name, setting.b),
-                          {key ? sweep_schema().keys()[*key].meaning : std::string(), {}}});
+                          {key ? sweep::sweep_schema().keys()[*key].meaning : std::string(), {}}});
   }
   return table;
 }
 
-SortedCell figure_cell(const Cell& value, const std::string& figure) {
-  SortedCell cell{printable(figure_text(value, unit_of_figure(figure), "-")), {}};
-  if (const std::optional<double> number = number_of(value); number && std::isfinite(*number)) {
+report::SortedCell figure_cell(const tables::Cell& value, const std::string& figure) {
+  report::SortedCell cell{printable(tables::figure_text(value, unit_of_figure(figure), "-")), {}};
+  if (const std::optional<double> number = tables::number_of(value); number && std::isfinite(*number)) {
     cell.number = number;
   }
   return cell;
 }
 
-SortedCell change_cell(const Difference& figure) { return {change_of(figure), figure.relative()}; }
+report::SortedCell change_cell(const Difference& figure) { return {change_of(figure), figure.relative()}; }
 
-SortedCell time_cell(std::int64_t ps) { return {seconds(ps), static_cast<double>(ps)}; }
+report::SortedCell time_cell(std::int64_t ps) { return {tables::seconds(ps), static_cast<double>(ps)}; }
 
-SortedCell ratio_cell(double ratio) { return {fmt::format("{:.4f}", ratio), ratio}; }
+report::SortedCell ratio_cell(double ratio) { return {fmt::format("{:.4f}", ratio), ratio}; }
 
-SortedCell integer_cell(std::int64_t number) { return {std::to_string(number), static_cast<double>(number)}; }
+report::SortedCell integer_cell(std::int64_t number) {
+  return {std::to_string(number), static_cast<double>(number)};
+}
 
-SortedTable figures_table(const std::string& title, const std::vector<Difference>& figures) {
-  SortedTable table;
+report::SortedTable figures_table(const std::string& title, const std::vector<Difference>& figures) {
+  report::SortedTable table;
   table.title = title;
   table.columns = {{"figure", false, "name in the catalogue: marti figures"},
                    {"A", true, ""},
@@ -72,14 +74,14 @@ SortedTable figures_table(const std::string& title, const std::vector<Difference
   return table;
 }
 
-ReportChart ratio_chart(const std::vector<RatioPoint>& points) {
-  Table table("compare_points", "Frame time of B by that of A, for each point",
-              {{"point", ColumnType::integer, "1", "its number"},
-               {"name", ColumnType::text, "", "the values of its axes"},
-               {"a_ps", ColumnType::integer, "ps", "frame time of A"},
-               {"b_ps", ColumnType::integer, "ps", "frame time of B"},
-               {"ratio", ColumnType::real, "1", "frame time of B / frame time of A"},
-               {"which", ColumnType::text, "", "which is faster"}});
+report::ReportChart ratio_chart(const std::vector<RatioPoint>& points) {
+  tables::Table table("compare_points", "Frame time of B by that of A, for each point",
+                      {{"point", tables::ColumnType::integer, "1", "its number"},
+                       {"name", tables::ColumnType::text, "", "the values of its axes"},
+                       {"a_ps", tables::ColumnType::integer, "ps", "frame time of A"},
+                       {"b_ps", tables::ColumnType::integer, "ps", "frame time of B"},
+                       {"ratio", tables::ColumnType::real, "1", "frame time of B / frame time of A"},
+                       {"which", tables::ColumnType::text, "", "which is faster"}});
   for (const RatioPoint& point : points) {
     table.add_row({point.point, point.name, point.a, point.b,
                    static_cast<double>(point.b) / static_cast<double>(point.a),
@@ -87,7 +89,7 @@ ReportChart ratio_chart(const std::vector<RatioPoint>& points) {
                                : point.b > point.a ? "B is slower"
                                                    : "equal")});
   }
-  return make_chart(table.name(), table, "Below the line B is faster.");
+  return report::make_chart(table.name(), table, "Below the line B is faster.");
 }
 
 std::string who_is(const char* letter, const std::string& name, const std::string& version) {
@@ -95,4 +97,4 @@ std::string who_is(const char* letter, const std::string& name, const std::strin
                      version.empty() ? "" : ", made by marti " + printable(version));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

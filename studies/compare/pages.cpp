@@ -12,7 +12,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -46,23 +46,24 @@ void add_machine_part(const std::vector<Difference>& settings, const std::string
   page.parts.push_back(std::move(part));
 }
 
-ReportChart times_chart(const std::vector<ActivityTime>& times, double end) {
-  Table table("compare_times", "Where the time went",
-              {{"activity", ColumnType::text, "", "see docs/model.md, Accounting"},
-               {"a_ps", ColumnType::integer, "ps", "mean of a node of A"},
-               {"b_ps", ColumnType::integer, "ps", "mean of a node of B"},
-               {"change_ms", ColumnType::real, "ms", "B less A"},
-               {"of_frame", ColumnType::real, "fraction", "the change by the frame time of A"},
-               {"which", ColumnType::text, "", "whether B spends more"}});
+report::ReportChart times_chart(const std::vector<ActivityTime>& times, double end) {
+  tables::Table table(
+      "compare_times", "Where the time went",
+      {{"activity", tables::ColumnType::text, "", "see docs/model.md, Accounting"},
+       {"a_ps", tables::ColumnType::integer, "ps", "mean of a node of A"},
+       {"b_ps", tables::ColumnType::integer, "ps", "mean of a node of B"},
+       {"change_ms", tables::ColumnType::real, "ms", "B less A"},
+       {"of_frame", tables::ColumnType::real, "fraction", "the change by the frame time of A"},
+       {"which", tables::ColumnType::text, "", "whether B spends more"}});
   for (const ActivityTime& time : times) {
     table.add_row({time.activity, time.mean_a, time.mean_b, time.change * 1e-9, time.change / end,
                    std::string(time.change > 0.0 ? "more in B" : "less in B")});
   }
-  return make_chart(table.name(), table, "The changes add up to that of the frame time.");
+  return report::make_chart(table.name(), table, "The changes add up to that of the frame time.");
 }
 
-SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
-  SortedTable table;
+report::SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
+  report::SortedTable table;
   table.title = "Mean time of a node by activity";
   table.columns = {{"activity", false, "see docs/model.md, Accounting"},
                    {"A", true, ""},
@@ -73,8 +74,8 @@ SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
     table.rows.push_back({{time.activity, {}},
                           time_cell(time.mean_a),
                           time_cell(time.mean_b),
-                          {signed_seconds(std::llround(time.change)), time.change},
-                          {signed_percent(time.change / end), time.change / end}});
+                          {tables::signed_seconds(std::llround(time.change)), time.change},
+                          {tables::signed_percent(time.change / end), time.change / end}});
   }
   return table;
 }
@@ -126,7 +127,7 @@ ComparisonPage page_of(const ResultAndSweep& found) {
       fmt::format("{} in every point alike, {} from point to point, {} are equal.",
                   differ(found.alike.size(), "setting"), found.varied.size(), found.equal_settings),
       page);
-  SortedTable table;
+  report::SortedTable table;
   table.title = found.same_frame ? "Points, the shortest frame first" : "Points, the nearest machine first";
   table.columns = {{"point", true, "its number in the sweep"},
                    {"settings", false, "that differ from point to point"},
@@ -141,13 +142,14 @@ ComparisonPage page_of(const ResultAndSweep& found) {
     table.rows.push_back({integer_cell(point.ordinal),
                           {name, {}},
                           time_cell(point.end),
-                          found.same_frame ? ratio_cell(point.ratio) : SortedCell(),
+                          found.same_frame ? ratio_cell(point.ratio) : report::SortedCell(),
                           integer_cell(static_cast<std::int64_t>(point.distance))});
     ratios.push_back({point.ordinal, name, found.sweep_is_a() ? point.end : found.end,
                       found.sweep_is_a() ? found.end : point.end});
   }
   ComparisonPart points{"points", "Points", {}, {}, {}};
-  points.sentences.push_back(fmt::format("{} takes {}: {}.", found.result_letter(), seconds(found.end),
+  points.sentences.push_back(fmt::format("{} takes {}: {}.", found.result_letter(),
+                                         tables::seconds(found.end),
                                          values_text(found.varied, found.of_result(), false)));
   if (found.same_frame) {
     points.charts.push_back(ratio_chart(ratios));
@@ -160,7 +162,7 @@ ComparisonPage page_of(const ResultAndSweep& found) {
 ComparisonPage page_of(const TwoSweeps& found) {
   std::vector<std::string> verdict = verdict_of(found);
   verdict.push_back(fmt::format(
-      "{} in both, joined by {}; {} only in A, {} only in B.", counted(found.both, "point"),
+      "{} in both, joined by {}; {} only in A, {} only in B.", tables::counted(found.both, "point"),
       found.by_axes ? "the values of their axes" : "all settings", found.only_a.size(), found.only_b.size()));
   ComparisonPage page =
       begin_page(std::move(verdict), {found.a, found.version_a}, {found.b, found.version_b});
@@ -170,7 +172,7 @@ ComparisonPage page_of(const TwoSweeps& found) {
   if (found.points.empty()) {
     return page;
   }
-  SortedTable table;
+  report::SortedTable table;
   table.title = "Points, the largest effect first";
   table.columns = {{"point of A", true, "its number"}, {"point of B", true, "its number"}};
   for (const std::string& axis : found.axes) {
@@ -182,12 +184,12 @@ ComparisonPage page_of(const TwoSweeps& found) {
   std::vector<RatioPoint> ratios;
   for (std::size_t i = 0; i < std::min(found.points.size(), most_page_points); ++i) {
     const JoinedPoint& point = found.points[i];
-    std::vector<SortedCell> row = {integer_cell(point.a), integer_cell(point.b)};
+    std::vector<report::SortedCell> row = {integer_cell(point.a), integer_cell(point.b)};
     for (std::size_t axis = 0; axis < found.axes.size(); ++axis) {
-      row.push_back({point.texts[axis], number_of(point.values[axis])});
+      row.push_back({point.texts[axis], tables::number_of(point.values[axis])});
     }
     row.insert(row.end(), {time_cell(point.end_a), time_cell(point.end_b),
-                           point.same_frame ? ratio_cell(point.ratio()) : SortedCell()});
+                           point.same_frame ? ratio_cell(point.ratio()) : report::SortedCell()});
     table.rows.push_back(std::move(row));
     if (point.same_frame) {
       ratios.push_back({point.a, point.name, point.end_a, point.end_b});
@@ -200,16 +202,16 @@ ComparisonPage page_of(const TwoSweeps& found) {
   points.tables.push_back(std::move(table));
   page.parts.push_back(std::move(points));
   if (!found.times.empty()) {
-    SortedTable times;
+    report::SortedTable times;
     times.title = "Mean change of a node's time by activity";
     times.columns = {{"activity", false, "see docs/model.md, Accounting"},
                      {"of A's frame", true, "B less A by the frame time of A, mean of the points"}};
     for (const MeanChange& time : found.times) {
-      times.rows.push_back({{time.activity, {}}, {signed_percent(time.of_frame), time.of_frame}});
+      times.rows.push_back({{time.activity, {}}, {tables::signed_percent(time.of_frame), time.of_frame}});
     }
     page.parts.push_back({"time", "Where the time went", {}, {}, {std::move(times)}});
   }
-  SortedTable counters;
+  report::SortedTable counters;
   counters.title = "Counters that differ, each where it differs most";
   counters.columns = {{"counter", false, "name in the catalogue: marti figures"},
                       {"points", true, "that differ in it"},
@@ -238,4 +240,4 @@ ComparisonPage page_of(const TwoSweeps& found) {
   return page;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -13,7 +13,7 @@
 #include "studies/compare/frames.h"
 #include "studies/sweep/store/sweep_reader.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -26,7 +26,7 @@ struct Candidate {
 // Sets how far the point's settings are from the result's.
 void measure(ComparedPoint& point) {
   for (const Difference& setting : point.settings) {
-    if (setting.a == Cell() || setting.b == Cell()) {
+    if (setting.a == tables::Cell() || setting.b == tables::Cell()) {
       continue;
     }
     ++point.distance;
@@ -39,18 +39,18 @@ void measure(ComparedPoint& point) {
 }
 
 // The name of a point where the sweep has named ones.
-std::string name_of(const SweepReader& sweep, const StoredPoint& point) {
+std::string name_of(const sweep::SweepReader& sweep, const sweep::StoredPoint& point) {
   const auto axis = std::find(sweep.axes().begin(), sweep.axes().end(), "point");
   const auto index = static_cast<std::size_t>(axis - sweep.axes().begin());
   const auto* name = index < point.values.size() ? std::get_if<std::string>(&point.values[index]) : nullptr;
   return name == nullptr ? std::string() : *name;
 }
 
-std::vector<Candidate> candidates_of(const ComparedResult& own, const SweepReader& sweep,
+std::vector<Candidate> candidates_of(const ComparedResult& own, const sweep::SweepReader& sweep,
                                      ResultAndSweep& found) {
   std::vector<Candidate> candidates;
   const std::vector<std::string> names = {"end"};
-  sweep.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> figures) {
+  sweep.for_each_point(names, [&](const sweep::StoredPoint& stored, std::span<const tables::Cell> figures) {
     ++found.planned;
     if (!stored.done) {
       return;
@@ -61,7 +61,7 @@ std::vector<Candidate> candidates_of(const ComparedResult& own, const SweepReade
     for (auto& [key, value] : sweep.settings(stored.machine)) {
       other.settings.emplace(key, std::move(value));
     }
-    if (const std::optional<FrameRow> frame = sweep.read_frame(stored.machine)) {
+    if (const std::optional<sweep::FrameRow> frame = sweep.read_frame(stored.machine)) {
       add_frame(*frame, other);
     }
     other.figures["end"] = figures[0];
@@ -120,7 +120,7 @@ const ComparedPoint& ResultAndSweep::nearest() const {
 
 ResultAndSweep result_and_sweep(const ComparedResult& result, const std::filesystem::path& file,
                                 SweepSide side) {
-  const SweepReader sweep(file);
+  const sweep::SweepReader sweep(file);
   ResultAndSweep found;
   found.side = side;
   found.a = found.sweep_is_a() ? file.string() : result.name;
@@ -149,4 +149,4 @@ ResultAndSweep result_and_sweep(const ComparedResult& result, const std::filesys
   return found;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -11,7 +11,7 @@
 #include "studies/compare/differences.h"
 #include "studies/compare/figures.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// Which of A and B the sweep is; the result is the other.
 enum class SweepSide : std::uint8_t { a, b };
@@ -49,8 +49,12 @@ struct ResultAndSweep {
   [[nodiscard]] bool sweep_is_a() const { return side == SweepSide::a; }
   [[nodiscard]] const char* result_letter() const { return sweep_is_a() ? "B" : "A"; }
   [[nodiscard]] const char* sweep_letter() const { return sweep_is_a() ? "A" : "B"; }
-  [[nodiscard]] Cell Difference::*of_result() const { return sweep_is_a() ? &Difference::b : &Difference::a; }
-  [[nodiscard]] Cell Difference::*of_sweep() const { return sweep_is_a() ? &Difference::a : &Difference::b; }
+  [[nodiscard]] tables::Cell Difference::*of_result() const {
+    return sweep_is_a() ? &Difference::b : &Difference::a;
+  }
+  [[nodiscard]] tables::Cell Difference::*of_sweep() const {
+    return sweep_is_a() ? &Difference::a : &Difference::b;
+  }
   /// The point that differs from the result in the fewest settings; of several the one whose values are
   /// nearest, then the first in number.
   [[nodiscard]] const ComparedPoint& nearest() const;
@@ -72,4 +76,4 @@ struct ResultAndSweep {
 [[nodiscard]] std::string text_of(const ResultAndSweep& found, bool all);
 [[nodiscard]] std::string json_of(const ResultAndSweep& found);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

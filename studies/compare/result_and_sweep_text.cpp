@@ -10,7 +10,7 @@
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -53,11 +53,12 @@ std::string table_of(const ResultAndSweep& found, bool all) {
     fmt::format_to(out, "{}\n", settings);
   };
   line("point", "frame time", "B / A", "settings that differ from point to point");
-  line(found.result_letter(), seconds(found.end), "", values_text(found.varied, found.of_result(), all));
+  line(found.result_letter(), tables::seconds(found.end), "",
+       values_text(found.varied, found.of_result(), all));
   const std::size_t shown = all ? found.points.size() : std::min(found.points.size(), most_lines);
   for (std::size_t i = 0; i < shown; ++i) {
     const ComparedPoint& point = found.points[i];
-    line(std::to_string(point.ordinal), seconds(point.end), fmt::format("{:.4f}", point.ratio),
+    line(std::to_string(point.ordinal), tables::seconds(point.end), fmt::format("{:.4f}", point.ratio),
          (point.name.empty() ? "" : printable(point.name) + ": ") +
              values_text(point.settings, found.of_sweep(), all));
   }
@@ -83,7 +84,7 @@ std::vector<std::string> verdict_of(const ResultAndSweep& found) {
   } else {
     const PointCounts counts = counts_of(found);
     sentences.push_back(fmt::format("Of {}, {} {} faster than {}, {} as fast and {} slower.",
-                                    counted(found.points.size(), "point"), counts.faster,
+                                    tables::counted(found.points.size(), "point"), counts.faster,
                                     counts.faster == 1 ? "is" : "are", found.result_letter(), counts.equal,
                                     counts.slower));
     const ComparedPoint& best = found.points.front();
@@ -92,13 +93,14 @@ std::vector<std::string> verdict_of(const ResultAndSweep& found) {
     sentences.push_back(fmt::format("The fastest is {}. With it as {}, {}.", point_text(found, best),
                                     found.sweep_letter(), speed_text(a, b)));
     if (found.other_frames > 0) {
-      sentences.push_back(fmt::format("{} of other frames {} left out.", counted(found.other_frames, "point"),
+      sentences.push_back(fmt::format("{} of other frames {} left out.",
+                                      tables::counted(found.other_frames, "point"),
                                       found.other_frames == 1 ? "is" : "are"));
     }
   }
   const ComparedPoint& nearest = found.nearest();
   sentences.push_back(fmt::format("The nearest is {}: it differs from {} in {}.", point_text(found, nearest),
-                                  found.result_letter(), counted(nearest.distance, "setting")));
+                                  found.result_letter(), tables::counted(nearest.distance, "setting")));
   return sentences;
 }
 
@@ -121,16 +123,16 @@ std::string text_of(const ResultAndSweep& found, bool all) {
                    found.planned, found.timed, counts.faster, found.result_letter(), counts.equal,
                    counts.slower);
     const ComparedPoint& best = found.points.front();
-    fmt::format_to(out, "best           {}: {}, B / A = {:.4f}\n", point_text(found, best), seconds(best.end),
-                   best.ratio);
+    fmt::format_to(out, "best           {}: {}, B / A = {:.4f}\n", point_text(found, best),
+                   tables::seconds(best.end), best.ratio);
     fmt::format_to(out, "nearest        {}: {}, B / A = {:.4f}, differs in {}\n\n",
-                   point_text(found, nearest), seconds(nearest.end), nearest.ratio,
-                   counted(nearest.distance, "setting"));
+                   point_text(found, nearest), tables::seconds(nearest.end), nearest.ratio,
+                   tables::counted(nearest.distance, "setting"));
   } else {
     fmt::format_to(out, "\npoints         {}, {} of them timed, all of other frames\n", found.planned,
                    found.timed);
     fmt::format_to(out, "nearest        {}: {}, differs in {}\n\n", point_text(found, nearest),
-                   seconds(nearest.end), counted(nearest.distance, "setting"));
+                   tables::seconds(nearest.end), tables::counted(nearest.distance, "setting"));
   }
   return text + table_of(found, all);
 }
@@ -140,20 +142,20 @@ std::string json_of(const ResultAndSweep& found) {
   for (const ComparedPoint& point : found.points) {
     points.push_back(point_json(found, point));
   }
-  return json_text(Json{{"a", {{"name", found.a}}},
-                        {"b", {{"name", found.b}}},
-                        {"sweep", found.sweep_is_a() ? "a" : "b"},
-                        {"verdict", verdict_of(found)},
-                        {"same_frame", found.same_frame},
-                        {"end", found.end},
-                        {"planned_points", found.planned},
-                        {"timed_points", found.timed},
-                        {"points_of_other_frames", found.other_frames},
-                        {"nearest_point", found.nearest().ordinal},
-                        {"frame_settings", settings_json(found.frame)},
-                        {"settings", settings_json(found.alike)},
-                        {"equal_settings", found.equal_settings},
-                        {"points", points}});
+  return tables::json_text(Json{{"a", {{"name", found.a}}},
+                                {"b", {{"name", found.b}}},
+                                {"sweep", found.sweep_is_a() ? "a" : "b"},
+                                {"verdict", verdict_of(found)},
+                                {"same_frame", found.same_frame},
+                                {"end", found.end},
+                                {"planned_points", found.planned},
+                                {"timed_points", found.timed},
+                                {"points_of_other_frames", found.other_frames},
+                                {"nearest_point", found.nearest().ordinal},
+                                {"frame_settings", settings_json(found.frame)},
+                                {"settings", settings_json(found.alike)},
+                                {"equal_settings", found.equal_settings},
+                                {"points", points}});
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -16,28 +16,28 @@
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
 struct Sweep {
   explicit Sweep(const std::filesystem::path& file) : reader(file), points(reader.points()) {}
 
-  SweepReader reader;
-  std::vector<StoredPoint> points;
+  sweep::SweepReader reader;
+  std::vector<sweep::StoredPoint> points;
 };
 
 // A value with its type and all its digits, so that 1 and "1" differ.
-std::string typed(const Cell& cell) {
+std::string typed(const tables::Cell& cell) {
   const auto* const text = std::get_if<std::string>(&cell);
   const auto* const integer = std::get_if<std::int64_t>(&cell);
   const std::string value = text != nullptr      ? *text
                             : integer != nullptr ? std::to_string(*integer)
-                                                 : fmt::format("{}", number_of(cell).value_or(0.0));
+                                                 : fmt::format("{}", tables::number_of(cell).value_or(0.0));
   return fmt::format("{}:{}", cell.index(), value);
 }
 
-std::map<std::string, std::string> settings_of(const SweepReader& reader, std::int64_t machine) {
+std::map<std::string, std::string> settings_of(const sweep::SweepReader& reader, std::int64_t machine) {
   const auto list = reader.settings(machine);
   return {list.begin(), list.end()};
 }
@@ -54,7 +54,7 @@ std::vector<std::string> telling_axes(const Sweep& sweep) {
   std::vector<std::string> telling = {"point"};
   for (std::size_t i = 0; i < axes.size(); ++i) {
     std::map<std::string, std::set<std::string>> values;
-    for (const StoredPoint& point : sweep.points) {
+    for (const sweep::StoredPoint& point : sweep.points) {
       values[typed(point.values[at])].insert(typed(point.values[i]));
     }
     const bool follows =
@@ -66,17 +66,18 @@ std::vector<std::string> telling_axes(const Sweep& sweep) {
   return telling;
 }
 
-std::string axes_key(const Sweep& sweep, const StoredPoint& point, const std::vector<std::string>& axes) {
+std::string axes_key(const Sweep& sweep, const sweep::StoredPoint& point,
+                     const std::vector<std::string>& axes) {
   std::string key;
   for (const std::string& axis : axes) {
     const auto at = std::find(sweep.reader.axes().begin(), sweep.reader.axes().end(), axis);
-    const Cell& value = point.values.at(static_cast<std::size_t>(at - sweep.reader.axes().begin()));
+    const tables::Cell& value = point.values.at(static_cast<std::size_t>(at - sweep.reader.axes().begin()));
     key += axis + "=" + typed(value) + "\n";
   }
   return key;
 }
 
-std::string settings_key(const Sweep& sweep, const StoredPoint& point) {
+std::string settings_key(const Sweep& sweep, const sweep::StoredPoint& point) {
   std::string key;
   for (const auto& [name, value] : sweep.reader.settings(point.machine)) {
     key += name;
@@ -88,12 +89,12 @@ std::string settings_key(const Sweep& sweep, const StoredPoint& point) {
 }
 
 // The first point of each key.
-using Index = std::map<std::string, const StoredPoint*>;
+using Index = std::map<std::string, const sweep::StoredPoint*>;
 
 Index index_of(const Sweep& sweep, const std::vector<std::string>* axes) {
   Index index;
   std::set<std::int64_t> machines;
-  for (const StoredPoint& point : sweep.points) {
+  for (const sweep::StoredPoint& point : sweep.points) {
     if (axes != nullptr) {
       index.emplace(axes_key(sweep, point, *axes), &point);
     } else if (machines.insert(point.machine).second) {
@@ -103,7 +104,7 @@ Index index_of(const Sweep& sweep, const std::vector<std::string>* axes) {
   return index;
 }
 
-ComparedResult result_of(const Sweep& sweep, const StoredPoint& point) {
+ComparedResult result_of(const Sweep& sweep, const sweep::StoredPoint& point) {
   ComparedResult result;
   result.name = fmt::format("{}:{}", sweep.reader.file().string(), point.ordinal);
   result.version = sweep.reader.version();
@@ -113,13 +114,13 @@ ComparedResult result_of(const Sweep& sweep, const StoredPoint& point) {
 }
 
 // The values of a point's axes as people write them.
-std::vector<std::string> texts_of(const Sweep& sweep, const StoredPoint& point,
+std::vector<std::string> texts_of(const Sweep& sweep, const sweep::StoredPoint& point,
                                   const std::map<std::string, std::string>& settings) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < sweep.reader.axes().size(); ++i) {
     const auto setting = settings.find(sweep.reader.axes()[i]);
-    texts.push_back(printable(setting == settings.end() ? short_text(point.values[i], "-")
-                                                        : plain_setting(setting->second)));
+    texts.push_back(printable(setting == settings.end() ? tables::short_text(point.values[i], "-")
+                                                        : keys::plain_setting(setting->second)));
   }
   return texts;
 }
@@ -179,8 +180,8 @@ std::vector<MeanChange> mean_changes(const Sums& sums) {
 }
 
 // One pair of timed points.
-void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredPoint& to, TwoSweeps& found,
-          Sums& sums) {
+void join(const Sweep& a, const Sweep& b, const sweep::StoredPoint& from, const sweep::StoredPoint& to,
+          TwoSweeps& found, Sums& sums) {
   ComparedResult one = result_of(a, from);
   ComparedResult other = result_of(b, to);
   JoinedPoint point;
@@ -198,7 +199,7 @@ void join(const Sweep& a, const Sweep& b, const StoredPoint& from, const StoredP
   keep_what_sweeps_have(other);
   point.settings = differences_of(one, other).settings;
   for (auto [sweep, stored, result] : {std::tuple(&a, &from, &one), std::tuple(&b, &to, &other)}) {
-    if (const std::optional<FrameRow> frame = sweep->reader.read_frame(stored->machine)) {
+    if (const std::optional<sweep::FrameRow> frame = sweep->reader.read_frame(stored->machine)) {
       add_frame(*frame, *result);
     }
   }
@@ -289,7 +290,7 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   std::sort(found.only_b.begin(), found.only_b.end());
   sort_points(found);
   take_settings(found);
-  found.counters = counted_figures().size();
+  found.counters = figures::counted_figures().size();
   found.times = mean_changes(sums);
   for (auto& [name, counter] : sums.counters) {
     found.differing.push_back(std::move(counter));
@@ -309,4 +310,4 @@ std::optional<double> mean_ratio(const TwoSweeps& found) {
   return comparable == 0 ? std::nullopt : std::optional(std::exp(sum / static_cast<double>(comparable)));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

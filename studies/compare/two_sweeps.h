@@ -12,16 +12,16 @@
 #include "studies/compare/differences.h"
 #include "studies/compare/figures.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// A point of A and the point of B that it is compared with. Both have been timed.
 struct JoinedPoint {
   std::int64_t a = 0;  ///< ordinals
   std::int64_t b = 0;
-  std::string name;                ///< the values of A's axes: "machine.nodes 8, cache.size 4 KiB"
-  std::vector<Cell> values;        ///< of A's axes
-  std::vector<std::string> texts;  ///< these values as people write them: "4 KiB"
-  std::int64_t end_a = 0;          ///< ps
+  std::string name;                  ///< the values of A's axes: "machine.nodes 8, cache.size 4 KiB"
+  std::vector<tables::Cell> values;  ///< of A's axes
+  std::vector<std::string> texts;    ///< these values as people write them: "4 KiB"
+  std::int64_t end_a = 0;            ///< ps
   std::int64_t end_b = 0;
   bool same_frame = false;           ///< only then its times can be compared
   std::vector<Difference> settings;  ///< that differ, without the alike ones
@@ -81,4 +81,4 @@ struct TwoSweeps {
 [[nodiscard]] std::string text_of(const TwoSweeps& found, bool all);
 [[nodiscard]] std::string json_of(const TwoSweeps& found);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

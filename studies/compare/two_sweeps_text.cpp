@@ -10,7 +10,7 @@
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -39,7 +39,7 @@ std::string point_lines(const TwoSweeps& found, bool all) {
   const std::size_t shown = all ? found.points.size() : std::min(found.points.size(), most_lines);
   for (std::size_t i = 0; i < shown; ++i) {
     const JoinedPoint& point = found.points[i];
-    line(point.a, point.b, seconds(point.end_a), seconds(point.end_b),
+    line(point.a, point.b, tables::seconds(point.end_a), tables::seconds(point.end_b),
          point.same_frame ? fmt::format("{:.4f}", point.ratio()) : "frames", point.name);
   }
   return text + and_more(shown, found.points.size());
@@ -48,7 +48,7 @@ std::string point_lines(const TwoSweeps& found, bool all) {
 std::string time_lines(const TwoSweeps& found) {
   std::string text = "\n  mean change of a node's time, of A's frame\n";
   for (const MeanChange& time : found.times) {
-    text += fmt::format("  {:<20}{:>12}\n", time.activity, signed_percent(time.of_frame));
+    text += fmt::format("  {:<20}{:>12}\n", time.activity, tables::signed_percent(time.of_frame));
   }
   return text;
 }
@@ -62,8 +62,9 @@ std::string counter_lines(const TwoSweeps& found, bool all) {
     const CounterDifference& counter = found.differing[i];
     const std::string unit = unit_of_figure(counter.largest.name);
     fmt::format_to(out, "  {:<32}{:>9}  {:>11}  {} to {}, at {} and {}\n", counter.largest.name,
-                   counter.points, change_of(counter.largest), figure_text(counter.largest.a, unit, "-"),
-                   figure_text(counter.largest.b, unit, "-"), counter.a, counter.b);
+                   counter.points, change_of(counter.largest),
+                   tables::figure_text(counter.largest.a, unit, "-"),
+                   tables::figure_text(counter.largest.b, unit, "-"), counter.a, counter.b);
   }
   return text + and_more(shown, found.differing.size());
 }
@@ -77,8 +78,8 @@ std::string balance(const TwoSweeps& found) {
     slower += found.points[i].end_b > found.points[i].end_a ? 1 : 0;
   }
   return fmt::format("Of {} that both have, B is faster at {}, as fast as A at {} and slower at {}.",
-                     counted(found.comparable(), "point"), faster, found.comparable() - faster - slower,
-                     slower);
+                     tables::counted(found.comparable(), "point"), faster,
+                     found.comparable() - faster - slower, slower);
 }
 
 }  // namespace
@@ -107,7 +108,8 @@ std::vector<std::string> verdict_of(const TwoSweeps& found) {
       say("B loses most", worst);
     }
     if (const std::optional<double> mean = mean_ratio(found); mean && best.ratio() != worst.ratio()) {
-      sentences.push_back(fmt::format("In the geometric mean B takes {} times as long as A.", times(*mean)));
+      sentences.push_back(
+          fmt::format("In the geometric mean B takes {} times as long as A.", tables::times(*mean)));
     }
   }
   if (comparable < found.points.size()) {
@@ -115,7 +117,7 @@ std::vector<std::string> verdict_of(const TwoSweeps& found) {
         fmt::format("{} different frames: {} times say nothing about the machines.",
                     found.points.size() - comparable == 1
                         ? "1 joined point renders"
-                        : counted(found.points.size() - comparable, "joined point") + " render",
+                        : tables::counted(found.points.size() - comparable, "joined point") + " render",
                     found.points.size() - comparable == 1 ? "its" : "their"));
   }
   if (found.equal == found.points.size()) {
@@ -130,7 +132,7 @@ std::string text_of(const TwoSweeps& found, bool all) {
   text += verdict_lines(verdict_of(found));
   if (!found.frame.empty()) {
     fmt::format_to(out, "\nframe          {} in which joined points differ\n{}",
-                   counted(found.frame.size(), "setting"), settings_lines(found.frame));
+                   tables::counted(found.frame.size(), "setting"), settings_lines(found.frame));
   }
   text += "\n";
   if (found.version_a != found.version_b) {
@@ -176,7 +178,7 @@ std::string json_of(const TwoSweeps& found) {
   for (const JoinedPoint& point : found.points) {
     Json axes = Json::object();
     for (std::size_t i = 0; i < found.axes.size(); ++i) {
-      axes[found.axes[i]] = json_of(point.values[i]);
+      axes[found.axes[i]] = tables::json_of(point.values[i]);
     }
     points.push_back({{"point_a", point.a},
                       {"point_b", point.b},
@@ -191,21 +193,21 @@ std::string json_of(const TwoSweeps& found) {
     times.push_back({{"name", "time_" + time.activity}, {"change_of_frame", time.of_frame}});
   }
   const std::optional<double> mean = mean_ratio(found);
-  return json_text(Json{{"a", {{"name", found.a}, {"version", found.version_a}}},
-                        {"b", {{"name", found.b}, {"version", found.version_b}}},
-                        {"verdict", verdict_of(found)},
-                        {"joined_by", found.by_axes ? "axes" : "settings"},
-                        {"machines_in_both", found.both},
-                        {"timed_in_both", found.points.size()},
-                        {"equal_machines", found.equal},
-                        {"points_only_in_a", found.only_a},
-                        {"points_only_in_b", found.only_b},
-                        {"mean_ratio", mean ? Json(*mean) : Json()},
-                        {"times", times},
-                        {"frame_settings", settings_json(found.frame)},
-                        {"settings", settings_json(found.alike)},
-                        {"points", points},
-                        {"counters", counters}});
+  return tables::json_text(Json{{"a", {{"name", found.a}, {"version", found.version_a}}},
+                                {"b", {{"name", found.b}, {"version", found.version_b}}},
+                                {"verdict", verdict_of(found)},
+                                {"joined_by", found.by_axes ? "axes" : "settings"},
+                                {"machines_in_both", found.both},
+                                {"timed_in_both", found.points.size()},
+                                {"equal_machines", found.equal},
+                                {"points_only_in_a", found.only_a},
+                                {"points_only_in_b", found.only_b},
+                                {"mean_ratio", mean ? Json(*mean) : Json()},
+                                {"times", times},
+                                {"frame_settings", settings_json(found.frame)},
+                                {"settings", settings_json(found.alike)},
+                                {"points", points},
+                                {"counters", counters}});
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

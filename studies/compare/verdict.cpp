@@ -12,7 +12,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 namespace {
 
@@ -26,7 +26,7 @@ constexpr double most_against = 0.25;
 
 std::optional<double> figure(const ComparedResult& result, const std::string& name) {
   const auto at = result.figures.find(name);
-  return at == result.figures.end() ? std::nullopt : number_of(at->second);
+  return at == result.figures.end() ? std::nullopt : tables::number_of(at->second);
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -42,13 +42,13 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
   std::vector<std::string> parts;
   for (const Difference& setting : settings) {
     // A setting that only one machine uses follows from another one.
-    if (setting.a != Cell() && setting.b != Cell() && parts.size() < most_named) {
+    if (setting.a != tables::Cell() && setting.b != tables::Cell() && parts.size() < most_named) {
       parts.push_back(fmt::format("{} ({} in A, {} in B)", setting.name, setting_text(setting.a),
                                   setting_text(setting.b)));
     }
   }
   if (parts.empty()) {
-    return counted(settings.size(), "setting");
+    return tables::counted(settings.size(), "setting");
   }
   if (parts.size() < settings.size()) {
     parts.push_back(fmt::format("{} more", settings.size() - parts.size()));
@@ -63,7 +63,8 @@ std::string both_ways(const ComparedPair& pair) {
     if (parts.size() == most_activities) {
       break;
     }
-    parts.push_back(fmt::format("{} ({})", words(time.activity), signed_seconds(std::llround(time.change))));
+    parts.push_back(fmt::format("{} ({})", report::words(time.activity),
+                                tables::signed_seconds(std::llround(time.change))));
   }
   return "What changes most, as the mean of a node: " + joined(parts) + ".";
 }
@@ -88,14 +89,14 @@ std::string why(const ComparedPair& pair, std::int64_t change) {
       break;
     }
     explained += std::abs(time.change);
-    parts.push_back(fmt::format("{} {}{} ({})", seconds(std::llround(std::abs(time.change))),
-                                parts.empty() ? "are " : "", words(time.activity),
-                                rough_percent(time.change / all)));
+    parts.push_back(fmt::format("{} {}{} ({})", tables::seconds(std::llround(std::abs(time.change))),
+                                parts.empty() ? "are " : "", report::words(time.activity),
+                                tables::rough_percent(time.change / all)));
   }
   if (parts.empty()) {
     return {};
   }
-  return fmt::format("Of the {} {}, {}, as the mean of a node.", seconds(std::abs(change)),
+  return fmt::format("Of the {} {}, {}, as the mean of a node.", tables::seconds(std::abs(change)),
                      change > 0 ? "more" : "less", joined(parts));
 }
 
@@ -110,8 +111,9 @@ std::string misses_sentence(const ComparedPair& pair) {
   }
   return fmt::format(
       "The nodes of B miss {} times as often ({} lines, {} in A); their hit ratio is {}, {} in A.",
-      times(*b / *a), figure_text(pair.b.figures.at("misses"), "1", "-"),
-      figure_text(pair.a.figures.at("misses"), "1", "-"), percent(*ratio_b), percent(*ratio_a));
+      tables::times(*b / *a), tables::figure_text(pair.b.figures.at("misses"), "1", "-"),
+      tables::figure_text(pair.a.figures.at("misses"), "1", "-"), tables::percent(*ratio_b),
+      tables::percent(*ratio_a));
 }
 
 }  // namespace
@@ -130,12 +132,13 @@ ComparedPair compared_pair(ComparedResult a, ComparedResult b) {
 
 std::string speed_text(std::int64_t a, std::int64_t b) {
   if (a == b) {
-    return fmt::format("A and B are equally fast: a frame takes {}", seconds(a));
+    return fmt::format("A and B are equally fast: a frame takes {}", tables::seconds(a));
   }
   const double ratio = static_cast<double>(b) / static_cast<double>(a);
   return fmt::format("B is {}: its frame takes {}, that of A {}, {} times as {} ({})",
-                     b < a ? "faster" : "slower", seconds(b), seconds(a), times(b < a ? 1.0 / ratio : ratio),
-                     b < a ? "fast" : "long", signed_percent(ratio - 1.0));
+                     b < a ? "faster" : "slower", tables::seconds(b), tables::seconds(a),
+                     tables::times(b < a ? 1.0 / ratio : ratio), b < a ? "fast" : "long",
+                     tables::signed_percent(ratio - 1.0));
 }
 
 std::vector<std::string> verdict_of(const ComparedPair& pair) {
@@ -156,7 +159,8 @@ std::vector<std::string> verdict_of(const ComparedPair& pair) {
     say(fmt::format(
         "A and B render different frames{}: their times, {} and {}, are of different work and say "
         "nothing about the machines.",
-        of_frame.empty() ? "" : ", by " + settings_sentence(of_frame), seconds(*a), seconds(*b)));
+        of_frame.empty() ? "" : ", by " + settings_sentence(of_frame), tables::seconds(*a),
+        tables::seconds(*b)));
   } else {
     say(speed_text(*a, *b) + ".");
     say(*a == *b ? std::string() : why(pair, *b - *a));
@@ -176,4 +180,4 @@ std::vector<std::string> helps_of(const ComparedPair& pair) {
   return sentences;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -8,7 +8,7 @@
 #include "studies/compare/cycles.h"
 #include "studies/compare/differences.h"
 
-namespace marti::studies {
+namespace marti::studies::compare {
 
 /// Two results, and all that is said of them.
 struct ComparedPair {
@@ -31,4 +31,4 @@ struct ComparedPair {
 /// What would make each frame shorter, where it is recorded.
 [[nodiscard]] std::vector<std::string> helps_of(const ComparedPair& pair);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::compare

@@ -12,12 +12,12 @@
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
 // Appends one family's part of the study.
-void append(StudyOutput& output, StudyOutput part) {
+void append(tables::StudyOutput& output, tables::StudyOutput part) {
   std::move(part.tables.begin(), part.tables.end(), std::back_inserter(output.tables));
   std::move(part.host_tables.begin(), part.host_tables.end(), std::back_inserter(output.host_tables));
   std::move(part.images.begin(), part.images.end(), std::back_inserter(output.images));
@@ -25,33 +25,34 @@ void append(StudyOutput& output, StudyOutput part) {
   output.host_report += part.host_report;
 }
 
-StudyOutput simulator_error(const ErrorConfig& config) {
+tables::StudyOutput simulator_error(const ErrorConfig& config) {
   const SimulatorStudy study = study_simulator(config);
   const std::vector<MethodErrors> errors = errors_of(study);
-  StudyOutput part;
+  tables::StudyOutput part;
   part.tables = {method_table(study, errors), figure_table(study, errors), case_table(study),
                  level_table(study), measured_table(study)};
   part.host_tables = {time_table(study, errors), fastest_table(study, errors)};
   part.report = fmt::format("Simulator: {} machines on {} frames\n\n{}\n{}\n", study.cases.size(),
-                            study.cases.back().frame + 1, text_of(part.tables[0]), text_of(part.tables[3]));
+                            study.cases.back().frame + 1, tables::text_of(part.tables[0]),
+                            tables::text_of(part.tables[3]));
   part.host_report = fmt::format("Simulator: run time, {} repeats\n\n{}\n{}\n", config.repeats,
-                                 text_of(part.host_tables[0]), text_of(part.host_tables[1]));
+                                 tables::text_of(part.host_tables[0]), tables::text_of(part.host_tables[1]));
   return part;
 }
 
 }  // namespace
 
-StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter) {
+tables::StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter) {
   ErrorConfig error = read_error(config);
   error.frame.meter = meter;
-  StudyOutput output;
+  tables::StudyOutput output;
   for (const ErrorFamily family : error.families) {
     append(output, family == ErrorFamily::simulator ? simulator_error(error)
                                                     : rendering_error(error.frame, error.rendering));
   }
-  output.tables.push_back(provenance_table(config.effective_values()));
-  output.host_tables.push_back(host_table());
+  output.tables.push_back(tables::provenance_table(config.effective_values()));
+  output.host_tables.push_back(tables::host_table());
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -5,10 +5,10 @@
 #include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// The simulator's methods against exact replay. Throws UserError for anything wrong with the input.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

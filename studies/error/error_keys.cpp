@@ -14,7 +14,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
@@ -34,18 +34,18 @@ std::vector<T> ascending(std::span<const sim::Value> values) {
 // Refuses machines that cannot be built or that a method cannot answer for.
 void check_machines(const sim::Config& config, const ErrorConfig& error) {
   for (const std::uint64_t cache : error.caches) {
-    const processors::MachineConfig machine = machine_with(error.machine, error.nodes.back(), cache);
+    const processors::machine::MachineConfig machine = machine_with(error.machine, error.nodes.back(), cache);
     try {
-      processors::check(machine);
+      processors::machine::check(machine);
     } catch (const sim::KeyError& problem) {
       const bool size = problem.key() == "cache.size";
       config.fail(size ? "error.cache_sizes" : problem.key(),
                   (size ? sim::print_size(static_cast<std::int64_t>(cache)) + ": " : "") + problem.reason());
     }
-    refuse_beyond_memory(config, error.frame, machine);
-    for (const Method& method : simulator_methods()) {
+    run::refuse_beyond_memory(config, error.frame, machine);
+    for (const estimate::Method& method : estimate::simulator_methods()) {
       try {
-        check_method(method, machine);
+        estimate::check_method(method, machine);
       } catch (const sim::KeyError& problem) {
         config.fail(problem.key(), "the study measures every method on the machine, and " + problem.reason());
       }
@@ -57,7 +57,7 @@ void check_machines(const sim::Config& config, const ErrorConfig& error) {
 void check_scenes(const sim::Config& config, const ErrorConfig& error) {
   for (const std::string& scene : error.scenes) {
     try {
-      (void)scenes::open_scene(scene, error.frame.open, decode_image);
+      (void)scenes::open_scene(scene, error.frame.open, host::decode_image);
     } catch (const sim::UserError& problem) {
       config.fail("error.scenes", problem.what());
     }
@@ -104,17 +104,17 @@ void declare_error_keys(sim::Schema& schema) {
 
 sim::Schema error_schema() {
   sim::Schema schema;
-  declare_frame_keys(schema);
-  declare_machine_keys(schema);
+  keys::declare_frame_keys(schema);
+  keys::declare_machine_keys(schema);
   declare_error_keys(schema);
   declare_rendering_error_keys(schema);
-  declare_sections_of_other_commands(schema);
+  keys::declare_sections_of_other_commands(schema);
   return schema;
 }
 
-processors::MachineConfig machine_with(const processors::MachineConfig& machine, std::uint32_t nodes,
-                                       std::uint64_t cache_bytes) {
-  processors::MachineConfig other = machine;
+processors::machine::MachineConfig machine_with(const processors::machine::MachineConfig& machine,
+                                                std::uint32_t nodes, std::uint64_t cache_bytes) {
+  processors::machine::MachineConfig other = machine;
   other.nodes = nodes;
   memory::CacheConfig& cache = other.cache.cache;
   cache.size = cache_bytes;
@@ -127,7 +127,7 @@ processors::MachineConfig machine_with(const processors::MachineConfig& machine,
 
 ErrorConfig read_error(sim::Config& config) {
   ErrorConfig error;
-  error.frame = read_one_frame(config);
+  error.frame = keys::read_one_frame(config);
   for (const sim::Value& name : config.values("error.families")) {
     const auto at = std::find(family_names.begin(), family_names.end(), std::get<std::string>(name));
     const auto family = static_cast<ErrorFamily>(at - family_names.begin());
@@ -147,7 +147,7 @@ ErrorConfig read_error(sim::Config& config) {
     config.mark_unused_reason("error.rendering", "error.families does not name \"rendering\"",
                               "error.families");
   }
-  error.machine = read_machine(config);
+  error.machine = keys::read_machine(config);
   error.scenes = config.texts("error.scenes");
   if (error.scenes.empty()) {
     config.fail("error.scenes", "must name a scene");
@@ -174,4 +174,4 @@ ErrorConfig read_error(sim::Config& config) {
   return error;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -17,20 +17,20 @@
 #include "studies/run/functional_run.h"
 #include "studies/run/open_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
-using processors::Frame;
-using processors::Image;
-using processors::RenderOptions;
+using processors::program::Frame;
+using processors::program::Image;
+using processors::program::RenderOptions;
 
 class Measurement {
  public:
-  Measurement(const FrameConfig& frame, const RenderingErrorOptions& options)
+  Measurement(const keys::FrameConfig& frame, const RenderingErrorOptions& options)
       : frame_(frame),
         options_(options),
-        scene_(open_frame(frame)),
+        scene_(run::open_frame(frame)),
         triangles_(std::make_shared<const accel::TriangleSet>(scene_)) {
     study_.scene = frame.scene;
     study_.plan = plan_rendering(frame, options, scene_);
@@ -83,15 +83,16 @@ class Measurement {
 
   void refuse_too_large() const {
     for (const RenderingSetting& setting : study_.plan.settings) {
-      FrameConfig frame = frame_;
+      keys::FrameConfig frame = frame_;
       frame.render = setting.render;
-      refuse_beyond_memory(frame, scene_, *triangles_, *structures_[setting.structure]);
+      run::refuse_beyond_memory(frame, scene_, *triangles_, *structures_[setting.structure]);
     }
   }
 
   [[nodiscard]] Frame render(const RenderingSetting& setting, const RenderOptions& options,
                              unsigned threads) const {
-    return processors::render(scene_, *triangles_, *structures_[setting.structure], options, threads);
+    return processors::program::render(scene_, *triangles_, *structures_[setting.structure], options,
+                                       threads);
   }
 
   // ---- References.
@@ -99,13 +100,13 @@ class Measurement {
   // The mean of as many renderings as the samples need; `number` tells independent references apart.
   [[nodiscard]] Image sampled_reference(std::uint32_t number) const {
     RenderOptions options = study_.plan.base;
-    const std::uint32_t parts = (options_.reference_samples - 1) / processors::max_samples + 1;
+    const std::uint32_t parts = (options_.reference_samples - 1) / processors::program::max_samples + 1;
     options.samples = (options_.reference_samples - 1) / parts + 1;
     std::vector<Vec> sums(std::size_t{options.width} * options.height);
     Image mean;
     for (std::uint32_t part = 0; part < parts; ++part) {
       options.seed = reference_seed(number * parts + part);
-      mean = processors::render(scene_, *triangles_, *structures_[0], options).image;
+      mean = processors::program::render(scene_, *triangles_, *structures_[0], options).image;
       for (std::size_t i = 0; i < sums.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
           sums[i][channel] += static_cast<double>(mean.pixels[i][static_cast<int>(channel)]);
@@ -124,7 +125,7 @@ class Measurement {
     const RenderOptions& base = study_.plan.base;
     Reference& sampled = references_[Knob::samples];
     sampled.image = sampled_reference(0);
-    sampled.floor = image_error(sampled_reference(1), sampled.image).rmse / std::sqrt(2.0);
+    sampled.floor = run::image_error(sampled_reference(1), sampled.image).rmse / std::sqrt(2.0);
     study_.reference_samples = options_.reference_samples;
     study_.reference_level = root_mean_square(sampled.image);
     study_.noise_floor = sampled.floor;
@@ -140,7 +141,7 @@ class Measurement {
   }
 
   [[nodiscard]] Image render_base(const RenderOptions& options) const {
-    return processors::render(scene_, *triangles_, *structures_[0], options).image;
+    return processors::program::render(scene_, *triangles_, *structures_[0], options).image;
   }
 
   // ---- Settings.
@@ -160,7 +161,7 @@ class Measurement {
     RenderOptions options = options_of(point.setting, 0);
     options.record = true;
     const Frame frame = render(point.setting, options, 0);
-    point.work = processors::totals_of(*frame.log);
+    point.work = processors::program::totals_of(*frame.log);
     const Reference& reference = references_.at(point.setting.knob);
     point.errors = rendering_errors(frame.image, reference.image);
     if ((point.setting.knob == Knob::exact || point.setting.reference) && point.errors.first) {
@@ -171,20 +172,20 @@ class Measurement {
           point.errors.plain.changed, frame.image.pixels.size(), first % options.width,
           first / options.width));
     }
-    found_.push_back({0.0, 0.0, 0.0, image_hash(frame.image)});
+    found_.push_back({0.0, 0.0, 0.0, run::image_hash(frame.image)});
   }
 
   void time(RenderingPoint& point, std::uint32_t repeat) {
     const RenderOptions options = options_of(point.setting, repeat);
-    const double before = process_cpu_seconds();
+    const double before = host::process_cpu_seconds();
     const Frame frame = render(point.setting, options, 1);
     if (point.setting.machine) {
-      static_cast<void>(processors::replay(*frame.log, *point.setting.machine));
+      static_cast<void>(processors::replay::replay(*frame.log, *point.setting.machine));
     }
-    point.cpu_ms.push_back(1e3 * (process_cpu_seconds() - before));
+    point.cpu_ms.push_back(1e3 * (host::process_cpu_seconds() - before));
     Found& found = found_[static_cast<std::size_t>(&point - study_.points.data())];
     const bool drawn = point.setting.knob == Knob::samples && options.samples > 1;
-    if (!(drawn && repeat != 0) && image_hash(frame.image) != found.hash) {
+    if (!(drawn && repeat != 0) && run::image_hash(frame.image) != found.hash) {
       throw sim::InternalError("a rendering differs when it is repeated: " + point.setting.name);
     }
     if (drawn) {
@@ -209,7 +210,7 @@ class Measurement {
 
   using Vec = std::array<double, 3>;
 
-  const FrameConfig& frame_;
+  const keys::FrameConfig& frame_;
   const RenderingErrorOptions& options_;
   scenes::Scene scene_;
   std::shared_ptr<const accel::TriangleSet> triangles_;
@@ -221,12 +222,12 @@ class Measurement {
 
 }  // namespace
 
-RenderingStudy measure_rendering(const FrameConfig& frame, const RenderingErrorOptions& options) {
+RenderingStudy measure_rendering(const keys::FrameConfig& frame, const RenderingErrorOptions& options) {
   return Measurement(frame, options).run();
 }
 
-StudyOutput rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options) {
+tables::StudyOutput rendering_error(const keys::FrameConfig& frame, const RenderingErrorOptions& options) {
   return output_of(measure_rendering(frame, options));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -12,7 +12,7 @@
 #include "studies/error/rendering_settings.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// A setting, measured.
 struct RenderingPoint {
@@ -22,9 +22,9 @@ struct RenderingPoint {
   /// that of the
   /// first repeat.
   RenderingErrors errors;
-  bool below_floor = false;    ///< not above the reference's own noise: the error is not known
-  processors::LogTotals work;  ///< counted in the first rendering
-  std::vector<double> cpu_ms;  ///< processor time of one thread, a figure for each repeat
+  bool below_floor = false;             ///< not above the reference's own noise: the error is not known
+  processors::program::LogTotals work;  ///< counted in the first rendering
+  std::vector<double> cpu_ms;           ///< processor time of one thread, a figure for each repeat
 
   [[nodiscard]] std::uint64_t visits() const { return work.branches + work.leaves; }
   /// Rays, visits and tests: what a run time comes from, counted.
@@ -44,13 +44,14 @@ struct RenderingStudy {
 /// Renders everything. Throws InternalError when a setting that must not change the image does, or a
 /// rendering is not the same twice; UserError as open_scene and render do, and when a frame would take more
 /// than host_machine.memory_limit.
-[[nodiscard]] RenderingStudy measure_rendering(const FrameConfig& frame,
+[[nodiscard]] RenderingStudy measure_rendering(const keys::FrameConfig& frame,
                                                const RenderingErrorOptions& options);
 
 /// The family of `marti study error`: tables that are the same always, host tables with run times, text.
-[[nodiscard]] StudyOutput output_of(const RenderingStudy& study);
+[[nodiscard]] tables::StudyOutput output_of(const RenderingStudy& study);
 
 /// Measures, and makes tables and text of it.
-[[nodiscard]] StudyOutput rendering_error(const FrameConfig& frame, const RenderingErrorOptions& options);
+[[nodiscard]] tables::StudyOutput rendering_error(const keys::FrameConfig& frame,
+                                                  const RenderingErrorOptions& options);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

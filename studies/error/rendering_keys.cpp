@@ -5,7 +5,7 @@
 
 #include "processors/program/render.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
@@ -37,8 +37,8 @@ std::vector<double> ascending_reals(const sim::Config& config, std::string_view 
 }  // namespace
 
 void declare_rendering_error_keys(sim::Schema& schema) {
-  using processors::max_ray_depth;
-  using processors::max_samples;
+  using processors::program::max_ray_depth;
+  using processors::program::max_samples;
   schema.section(
       "error.rendering",
       "only for `marti study error`: the settings of the renderer that are held against exact ones");
@@ -62,7 +62,7 @@ void declare_rendering_error_keys(sim::Schema& schema) {
                  "times that each run time is measured, in shuffled order");
 }
 
-RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfig& frame) {
+RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::FrameConfig& frame) {
   RenderingErrorOptions options;
   options.side = static_cast<std::uint32_t>(config.integer("error.rendering.side"));
   options.samples = ascending_integers(config, "error.rendering.samples");
@@ -92,4 +92,4 @@ RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfi
   return options;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -8,7 +8,7 @@
 #include "sim/schema.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 struct RenderingErrorOptions {
   std::uint32_t side = 64;             ///< pixels of the image's longer side at most
@@ -27,6 +27,6 @@ struct RenderingErrorOptions {
 void declare_rendering_error_keys(sim::Schema& schema);
 
 /// Throws UserError naming file, line and key. `frame` is what is rendered.
-[[nodiscard]] RenderingErrorOptions read_rendering_error(sim::Config& config, const FrameConfig& frame);
+[[nodiscard]] RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::FrameConfig& frame);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

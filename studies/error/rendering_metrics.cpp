@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::error {
 
-double root_mean_square(const processors::Image& image) {
+double root_mean_square(const processors::program::Image& image) {
   if (image.pixels.empty()) {
     return 0.0;
   }
@@ -21,9 +21,10 @@ double root_mean_square(const processors::Image& image) {
   return std::sqrt(squares / (3.0 * static_cast<double>(image.pixels.size())));
 }
 
-RenderingErrors rendering_errors(const processors::Image& image, const processors::Image& reference) {
+RenderingErrors rendering_errors(const processors::program::Image& image,
+                                 const processors::program::Image& reference) {
   RenderingErrors errors;
-  errors.plain = image_error(image, reference);
+  errors.plain = run::image_error(image, reference);
   const double scale = root_mean_square(reference);
   const auto over_scale = [&](double value) {
     return value == 0.0 ? 0.0 : (scale > 0.0 ? value / scale : std::numeric_limits<double>::infinity());
@@ -54,4 +55,4 @@ RenderingErrors rendering_errors(const processors::Image& image, const processor
   return errors;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

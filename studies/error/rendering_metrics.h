@@ -8,10 +8,10 @@
 #include "processors/program/image.h"
 #include "studies/run/voxel_report.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 struct RenderingErrors {
-  ImageError plain;       ///< root mean square, largest, pixels that differ
+  run::ImageError plain;  ///< root mean square, largest, pixels that differ
   double relative = 0.0;  ///< plain.rmse over the root mean square of the reference; 0 if that is 0 too
   /// Mean over pixels and channels of (x - r)^2 / (r^2 + 0.01): dark parts weigh as much as bright ones
   /// (F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
@@ -24,10 +24,10 @@ struct RenderingErrors {
 };
 
 /// Root of the mean square over all pixels and channels; 0 for no pixels.
-[[nodiscard]] double root_mean_square(const processors::Image& image);
+[[nodiscard]] double root_mean_square(const processors::program::Image& image);
 
 /// The images must be of one size.
-[[nodiscard]] RenderingErrors rendering_errors(const processors::Image& image,
-                                               const processors::Image& reference);
+[[nodiscard]] RenderingErrors rendering_errors(const processors::program::Image& image,
+                                               const processors::program::Image& reference);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -8,7 +8,7 @@
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
@@ -39,18 +39,18 @@ std::string error_lines(const RenderingStudy& study) {
   return text;
 }
 
-std::string time_lines(const RenderingStudy& study, const Table& times) {
+std::string time_lines(const RenderingStudy& study, const tables::Table& times) {
   std::string text = fmt::format("Run time of one thread, median and range of {} (confidence {:.1f} %)\n",
                                  study.points.front().cpu_ms.size(),
-                                 100.0 * median_interval(study.points.front().cpu_ms).confidence);
+                                 100.0 * estimate::median_interval(study.points.front().cpu_ms).confidence);
   text += fmt::format("  {:<10}{:<26}{:>10}{:>10}{:>10}{:>10}  {}\n", "knob", "setting", "ms", "from", "to",
                       "relative", "front");
   for (std::size_t i = 0; i < study.points.size(); ++i) {
     const RenderingPoint& point = study.points[i];
-    const MedianInterval cpu = median_interval(point.cpu_ms);
+    const estimate::MedianInterval cpu = estimate::median_interval(point.cpu_ms);
     text += fmt::format("  {:<10}{:<26}{:>10.3f}{:>10.3f}{:>10.3f}{:>10}  {}\n", name_of(point),
                         point.setting.name, cpu.median, cpu.low, cpu.high, number(point.errors.relative),
-                        times.at(i, "front") == Cell(std::int64_t{1}) ? "*" : "");
+                        times.at(i, "front") == tables::Cell(std::int64_t{1}) ? "*" : "");
   }
   return text;
 }
@@ -81,15 +81,15 @@ std::string precision_lines(const RenderingStudy& study) {
 
 }  // namespace
 
-StudyOutput output_of(const RenderingStudy& study) {
-  StudyOutput part;
+tables::StudyOutput output_of(const RenderingStudy& study) {
+  tables::StudyOutput part;
   part.tables = {rendering_error_table(study), rendering_cheapest_table(study)};
   part.host_tables = {rendering_time_table(study), rendering_fastest_table(study)};
 
-  const processors::RenderOptions& base = study.plan.base;
-  part.report =
-      fmt::format("Error of the renderer on {}, {} x {}, {} a pixel, at most {} rays in a row\n\n",
-                  study.scene, base.width, base.height, counted(base.samples, "sample"), base.max_depth);
+  const processors::program::RenderOptions& base = study.plan.base;
+  part.report = fmt::format("Error of the renderer on {}, {} x {}, {} a pixel, at most {} rays in a row\n\n",
+                            study.scene, base.width, base.height, tables::counted(base.samples, "sample"),
+                            base.max_depth);
   part.report += error_lines(study) + "\n";
   for (const std::string& note : study.plan.notes) {
     part.report += "Note: " + note + ".\n";
@@ -100,9 +100,9 @@ StudyOutput output_of(const RenderingStudy& study) {
   if (const std::optional<double> exponent = sample_exponent(study)) {
     part.report += fmt::format("; the error falls as samples^{:.2f}", *exponent);
   }
-  part.report += ".\n\n" + text_of(part.tables[1]);
-  part.host_report = time_lines(study, part.host_tables[0]) + "\n" + text_of(part.host_tables[1]);
+  part.report += ".\n\n" + tables::text_of(part.tables[1]);
+  part.host_report = time_lines(study, part.host_tables[0]) + "\n" + tables::text_of(part.host_tables[1]);
   return part;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -5,20 +5,20 @@
 
 #include <fmt/format.h>
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 // Primitives times pixels' samples that brute force may be asked for, each about once a light.
 constexpr double most_tests = 0x1p27;
 
 class Planner {
  public:
-  Planner(const FrameConfig& frame, const RenderingErrorOptions& options, const scenes::Scene& scene)
+  Planner(const keys::FrameConfig& frame, const RenderingErrorOptions& options, const scenes::Scene& scene)
       : frame_(frame), options_(options), scene_(scene) {
-    plan_.base = made_small(frame.render, options.side);
+    plan_.base = keys::made_small(frame.render, options.side);
     plan_.base.seed = options.seed;
     plan_.base.mailboxes = false;
     plan_.base.record = false;
@@ -30,7 +30,7 @@ class Planner {
       add(Knob::samples, fmt::format("{} a pixel", samples), samples).render.samples = samples;
     }
     for (const std::uint32_t depth : options_.depths) {
-      add(Knob::depth, counted(depth, "ray"), depth).render.max_depth = depth;
+      add(Knob::depth, tables::counted(depth, "ray"), depth).render.max_depth = depth;
     }
     RenderingSetting& deepest =
         add(Knob::depth, fmt::format("{} rays", options_.reference_depth), options_.reference_depth);
@@ -157,14 +157,14 @@ class Planner {
     machine.nodes = 256;
     add_machine("256 nodes", machine);
     machine.nodes = 16;
-    machine.scheme = processors::Scheme::pipeline;
-    machine.pipeline = processors::default_stages(machine.nodes);
+    machine.scheme = processors::machine::Scheme::pipeline;
+    machine.pipeline = processors::machine::default_stages(machine.nodes);
     add_machine("pipeline of 16", machine);
-    machine.scheme = processors::Scheme::space;
+    machine.scheme = processors::machine::Scheme::space;
     add_machine("space, 16 nodes", machine);
   }
 
-  const FrameConfig& frame_;
+  const keys::FrameConfig& frame_;
   const RenderingErrorOptions& options_;
   const scenes::Scene& scene_;
   RenderingPlan plan_;
@@ -172,9 +172,9 @@ class Planner {
 
 }  // namespace
 
-RenderingPlan plan_rendering(const FrameConfig& frame, const RenderingErrorOptions& options,
+RenderingPlan plan_rendering(const keys::FrameConfig& frame, const RenderingErrorOptions& options,
                              const scenes::Scene& scene) {
   return Planner(frame, options, scene).plan();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -15,7 +15,7 @@
 #include "scenes/scene.h"
 #include "studies/error/rendering_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// The parameter that is varied. `exact`: structure, its limits, mailboxes, packets and machine, none of
 /// which may change a bit of the image.
@@ -28,10 +28,10 @@ struct RenderingSetting {
   Knob knob = Knob::samples;
   std::string name;
   double value = 0.0;  ///< of the knob; bits of the significand for `precision`; 0 for `exact`
-  processors::RenderOptions render;
+  processors::program::RenderOptions render;
   std::size_t structure = 0;  ///< index into RenderingPlan::structures
   /// The recorded frame is timed on this machine, too, and its run time counts.
-  std::optional<processors::MachineConfig> machine;
+  std::optional<processors::machine::MachineConfig> machine;
   bool reference = false;  ///< the knob's own reference: its image must come out bit for bit
 };
 
@@ -41,13 +41,13 @@ struct StructurePlan {
 };
 
 struct RenderingPlan {
-  processors::RenderOptions base;          ///< the frame's, made small; each knob changes its own part
-  std::vector<StructurePlan> structures;   ///< the first is the frame's own
-  std::vector<RenderingSetting> settings;  ///< knob by knob, in the order of Knob, by ascending value
-  std::vector<std::string> notes;          ///< what was left out, and why
+  processors::program::RenderOptions base;  ///< the frame's, made small; each knob changes its own part
+  std::vector<StructurePlan> structures;    ///< the first is the frame's own
+  std::vector<RenderingSetting> settings;   ///< knob by knob, in the order of Knob, by ascending value
+  std::vector<std::string> notes;           ///< what was left out, and why
 };
 
-[[nodiscard]] RenderingPlan plan_rendering(const FrameConfig& frame, const RenderingErrorOptions& options,
-                                           const scenes::Scene& scene);
+[[nodiscard]] RenderingPlan plan_rendering(const keys::FrameConfig& frame,
+                                           const RenderingErrorOptions& options, const scenes::Scene& scene);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -6,7 +6,7 @@
 
 #include "studies/figures/best_offer.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
@@ -40,16 +40,17 @@ double exact_line(const RenderingStudy& study) {
   return std::pow(10.0, std::floor(std::log10(least)) - 1.0);
 }
 
-Table targets_table(const RenderingStudy& study, std::string name, std::string title, const Column& cost,
-                    const std::vector<double>& costs) {
-  Table table(
+tables::Table targets_table(const RenderingStudy& study, std::string name, std::string title,
+                            const tables::Column& cost, const std::vector<double>& costs) {
+  tables::Table table(
       std::move(name), std::move(title),
-      {{"target", ColumnType::real, "fraction", "largest relative error allowed"},
-       {"knob", ColumnType::text, "", "what is turned"},
-       {"setting", ColumnType::text, "", "the cheapest setting that meets the target; none: no value"},
-       {"error", ColumnType::real, "fraction", "its root mean square over that of the reference"},
+      {{"target", tables::ColumnType::real, "fraction", "largest relative error allowed"},
+       {"knob", tables::ColumnType::text, "", "what is turned"},
+       {"setting", tables::ColumnType::text, "",
+        "the cheapest setting that meets the target; none: no value"},
+       {"error", tables::ColumnType::real, "fraction", "its root mean square over that of the reference"},
        cost,
-       {"gain", ColumnType::real, "1",
+       {"gain", tables::ColumnType::real, "1",
         "times cheaper than the knob's exact setting (samples: than the most)"}});
   for (const double target : rendering_targets) {
     for (std::size_t k = 0; k < knobs; ++k) {
@@ -59,12 +60,14 @@ Table targets_table(const RenderingStudy& study, std::string name, std::string t
       }
       const std::optional<std::size_t> best = cheapest(study, knob, target, costs);
       if (!best) {
-        table.add_row({target, name_of(knob), Cell(), Cell(), Cell(), Cell()});
+        table.add_row(
+            {target, name_of(knob), tables::Cell(), tables::Cell(), tables::Cell(), tables::Cell()});
         continue;
       }
       const RenderingPoint& point = study.points[*best];
       table.add_row({target, name_of(knob), point.setting.name, point.errors.relative,
-                     cost.type == ColumnType::integer ? count_cell(point.steps()) : Cell(costs[*best]),
+                     cost.type == tables::ColumnType::integer ? tables::count_cell(point.steps())
+                                                              : tables::Cell(costs[*best]),
                      costs[dearest_of(study, knob)] / costs[*best]});
     }
   }
@@ -89,7 +92,7 @@ std::vector<double> counted_costs(const RenderingStudy& study) {
 std::vector<double> timed_costs(const RenderingStudy& study) {
   std::vector<double> costs;
   for (const RenderingPoint& point : study.points) {
-    costs.push_back(median_interval(point.cpu_ms).median);
+    costs.push_back(estimate::median_interval(point.cpu_ms).median);
   }
   return costs;
 }
@@ -99,12 +102,12 @@ std::vector<std::size_t> front_of(const RenderingStudy& study, Knob knob, const 
   // Where pixels are infinite the error is no number, and no point of the front.
   std::erase_if(points,
                 [&](std::size_t point) { return std::isnan(known_error(study, study.points[point])); });
-  std::vector<Offer> pairs;
+  std::vector<figures::Offer> pairs;
   for (const std::size_t point : points) {
     pairs.push_back({costs[point], known_error(study, study.points[point])});
   }
   std::vector<std::size_t> front;
-  for (const std::size_t index : pareto_front(pairs, Better::lower)) {
+  for (const std::size_t index : figures::pareto_front(pairs, figures::Better::lower)) {
     front.push_back(points[index]);
   }
   return front;
@@ -145,27 +148,29 @@ std::optional<double> sample_exponent(const RenderingStudy& study) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-Table rendering_error_table(const RenderingStudy& study) {
-  Table table(
+tables::Table rendering_error_table(const RenderingStudy& study) {
+  tables::Table table(
       "rendering_error", "Settings of the renderer: error and counted work",
-      {{"knob", ColumnType::text, "", "what is turned; exact: what must not change the image"},
-       {"setting", ColumnType::text, "", "to what"},
-       {"value", ColumnType::real, "1", "the same as a number; 0 for exact"},
-       {"rmse", ColumnType::real, "1", "root mean square of the difference from the reference, linear light"},
-       {"relative", ColumnType::real, "1", "the same over the root mean square of the reference"},
-       {"rel_mse", ColumnType::real, "1", "mean of (x - r)^2 / (r^2 + 0.01)"},
-       {"largest", ColumnType::real, "1", "largest difference of a channel"},
-       {"changed", ColumnType::real, "fraction", "pixels that differ in any bit"},
-       {"visible", ColumnType::integer, "1", "pixels with a channel that differs by more than 1/255"},
-       {"median_change", ColumnType::real, "1",
+      {{"knob", tables::ColumnType::text, "", "what is turned; exact: what must not change the image"},
+       {"setting", tables::ColumnType::text, "", "to what"},
+       {"value", tables::ColumnType::real, "1", "the same as a number; 0 for exact"},
+       {"rmse", tables::ColumnType::real, "1",
+        "root mean square of the difference from the reference, linear light"},
+       {"relative", tables::ColumnType::real, "1", "the same over the root mean square of the reference"},
+       {"rel_mse", tables::ColumnType::real, "1", "mean of (x - r)^2 / (r^2 + 0.01)"},
+       {"largest", tables::ColumnType::real, "1", "largest difference of a channel"},
+       {"changed", tables::ColumnType::real, "fraction", "pixels that differ in any bit"},
+       {"visible", tables::ColumnType::integer, "1", "pixels with a channel that differs by more than 1/255"},
+       {"median_change", tables::ColumnType::real, "1",
         "of the pixels that differ, the median of the largest difference, relative"},
-       {"first_column", ColumnType::integer, "1", "of the first pixel that differs, row by row"},
-       {"first_row", ColumnType::integer, "1", "of the same"},
-       {"noise", ColumnType::real, "1", "relative noise of the reference: errors below it are not known"},
-       {"below_noise", ColumnType::integer, "1", "1: the error is not above that noise"},
-       {"rays", ColumnType::integer, "1", "rays traced"},
-       {"visits", ColumnType::integer, "1", "nodes visited"},
-       {"tests", ColumnType::integer, "1", "primitives tested"}});
+       {"first_column", tables::ColumnType::integer, "1", "of the first pixel that differs, row by row"},
+       {"first_row", tables::ColumnType::integer, "1", "of the same"},
+       {"noise", tables::ColumnType::real, "1",
+        "relative noise of the reference: errors below it are not known"},
+       {"below_noise", tables::ColumnType::integer, "1", "1: the error is not above that noise"},
+       {"rays", tables::ColumnType::integer, "1", "rays traced"},
+       {"visits", tables::ColumnType::integer, "1", "nodes visited"},
+       {"tests", tables::ColumnType::integer, "1", "primitives tested"}});
   const double noise = study.reference_level > 0.0 ? study.noise_floor / study.reference_level : 0.0;
   for (const RenderingPoint& point : study.points) {
     const RenderingErrors& errors = point.errors;
@@ -174,42 +179,47 @@ Table rendering_error_table(const RenderingStudy& study) {
     const std::uint32_t width = point.setting.render.width;
     table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, errors.plain.rmse,
                    errors.relative, errors.rel_mse, errors.plain.largest,
-                   static_cast<double>(errors.plain.changed) / pixels, count_cell(errors.plain.visible),
-                   errors.median_change, errors.first ? count_cell(*errors.first % width) : Cell(),
-                   errors.first ? count_cell(*errors.first / width) : Cell(),
-                   point.setting.knob == Knob::samples ? noise : 0.0, count_cell(point.below_floor ? 1 : 0),
-                   count_cell(point.work.all_rays()), count_cell(point.visits()),
-                   count_cell(point.work.tests)});
+                   static_cast<double>(errors.plain.changed) / pixels,
+                   tables::count_cell(errors.plain.visible), errors.median_change,
+                   errors.first ? tables::count_cell(*errors.first % width) : tables::Cell(),
+                   errors.first ? tables::count_cell(*errors.first / width) : tables::Cell(),
+                   point.setting.knob == Knob::samples ? noise : 0.0,
+                   tables::count_cell(point.below_floor ? 1 : 0), tables::count_cell(point.work.all_rays()),
+                   tables::count_cell(point.visits()), tables::count_cell(point.work.tests)});
   }
   return table;
 }
 
-Table rendering_cheapest_table(const RenderingStudy& study) {
+tables::Table rendering_cheapest_table(const RenderingStudy& study) {
   return targets_table(study, "rendering_cheapest", "The least counted work for an error of at most ...",
-                       {"steps", ColumnType::integer, "1", "its rays, visits and tests"},
+                       {"steps", tables::ColumnType::integer, "1", "its rays, visits and tests"},
                        counted_costs(study));
 }
 
-Table rendering_fastest_table(const RenderingStudy& study) {
+tables::Table rendering_fastest_table(const RenderingStudy& study) {
   return targets_table(study, "host_rendering_fastest", "The fastest setting for an error of at most ...",
-                       {"cpu", ColumnType::real, "ms", "its run time, the median"}, timed_costs(study));
+                       {"cpu", tables::ColumnType::real, "ms", "its run time, the median"},
+                       timed_costs(study));
 }
 
-Table rendering_time_table(const RenderingStudy& study) {
-  Table table(
+tables::Table rendering_time_table(const RenderingStudy& study) {
+  tables::Table table(
       "host_rendering_time", "Settings of the renderer: error against run time",
-      {{"knob", ColumnType::text, "", "what is turned; exact: what must not change the image"},
-       {"setting", ColumnType::text, "", "to what"},
-       {"value", ColumnType::real, "1", "the same as a number; 0 for exact"},
-       {"cpu", ColumnType::real, "ms", "processor time of one thread, the median of the repeats"},
-       {"cpu_low", ColumnType::real, "ms", "the shortest"},
-       {"cpu_high", ColumnType::real, "ms", "the longest"},
-       {"confidence", ColumnType::real, "fraction", "with which the true median lies between these"},
-       {"relative", ColumnType::real, "1", "root mean square of the error over that of the reference"},
-       {"drawn", ColumnType::real, "1",
+      {{"knob", tables::ColumnType::text, "", "what is turned; exact: what must not change the image"},
+       {"setting", tables::ColumnType::text, "", "to what"},
+       {"value", tables::ColumnType::real, "1", "the same as a number; 0 for exact"},
+       {"cpu", tables::ColumnType::real, "ms", "processor time of one thread, the median of the repeats"},
+       {"cpu_low", tables::ColumnType::real, "ms", "the shortest"},
+       {"cpu_high", tables::ColumnType::real, "ms", "the longest"},
+       {"confidence", tables::ColumnType::real, "fraction", "with which the true median lies between these"},
+       {"relative", tables::ColumnType::real, "1",
+        "root mean square of the error over that of the reference"},
+       {"drawn", tables::ColumnType::real, "1",
         "the same for a logarithmic axis: no error at a line below all others"},
-       {"efficiency", ColumnType::real, "1/ms", "1 / (mean square error x run time); none without error"},
-       {"front", ColumnType::integer, "1", "1: no other setting of the knob is both faster and better"}});
+       {"efficiency", tables::ColumnType::real, "1/ms",
+        "1 / (mean square error x run time); none without error"},
+       {"front", tables::ColumnType::integer, "1",
+        "1: no other setting of the knob is both faster and better"}});
   const std::vector<double> costs = timed_costs(study);
   const double line = exact_line(study);
   std::vector<bool> front(study.points.size());
@@ -220,14 +230,15 @@ Table rendering_time_table(const RenderingStudy& study) {
   }
   for (std::size_t i = 0; i < study.points.size(); ++i) {
     const RenderingPoint& point = study.points[i];
-    const MedianInterval cpu = median_interval(point.cpu_ms);
+    const estimate::MedianInterval cpu = estimate::median_interval(point.cpu_ms);
     const double error = known_error(study, point);
     const double square = point.errors.plain.rmse * point.errors.plain.rmse;
     table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, cpu.median, cpu.low,
                    cpu.high, cpu.confidence, point.errors.relative, error > 0.0 ? error : line,
-                   square > 0.0 ? Cell(1.0 / (square * cpu.median)) : Cell(), count_cell(front[i] ? 1 : 0)});
+                   square > 0.0 ? tables::Cell(1.0 / (square * cpu.median)) : tables::Cell(),
+                   tables::count_cell(front[i] ? 1 : 0)});
   }
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

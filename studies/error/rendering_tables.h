@@ -9,7 +9,7 @@
 #include "studies/estimate/error_metrics.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// Relative errors that a user may allow.
 inline constexpr std::array<double, 4> rendering_targets = {0.10, 0.03, 0.01, 0.003};
@@ -35,13 +35,13 @@ inline constexpr std::array<double, 4> rendering_targets = {0.10, 0.03, 0.01, 0.
 [[nodiscard]] std::optional<double> sample_exponent(const RenderingStudy& study);
 
 /// "rendering_error": a row for each setting. The same input gives the same rows.
-[[nodiscard]] Table rendering_error_table(const RenderingStudy& study);
+[[nodiscard]] tables::Table rendering_error_table(const RenderingStudy& study);
 /// "rendering_cheapest": for each target and knob the setting of the fewest counted steps. Same input, same
 /// rows.
-[[nodiscard]] Table rendering_cheapest_table(const RenderingStudy& study);
+[[nodiscard]] tables::Table rendering_cheapest_table(const RenderingStudy& study);
 /// "host_rendering_time": a row for each setting, with its run time. Differs from run to run.
-[[nodiscard]] Table rendering_time_table(const RenderingStudy& study);
+[[nodiscard]] tables::Table rendering_time_table(const RenderingStudy& study);
 /// "host_rendering_fastest": for each target and knob the fastest setting. Differs from run to run.
-[[nodiscard]] Table rendering_fastest_table(const RenderingStudy& study);
+[[nodiscard]] tables::Table rendering_fastest_table(const RenderingStudy& study);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

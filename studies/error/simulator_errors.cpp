@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 namespace {
 
@@ -17,18 +17,19 @@ struct Answer {
   [[nodiscard]] double excess() const { return std::max(0.0, std::abs(error) - half_width); }
 };
 
-std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, Figure figure) {
+std::vector<Answer> answers_of(const SimulatorStudy& study, std::size_t method, estimate::Figure figure) {
   std::vector<Answer> answers;
   for (std::size_t number = 0; number < study.cases.size(); ++number) {
     // One node has a speed-up of exactly 1, whatever a method says.
-    if (figure == Figure::speed_up && study.cases[number].nodes == 1) {
+    if (figure == estimate::Figure::speed_up && study.cases[number].nodes == 1) {
       continue;
     }
-    const std::optional<Estimate>& estimate = study.estimates[method][number];
+    const std::optional<estimate::Estimate>& estimate = study.estimates[method][number];
     // An interval without bounds holds everything and says nothing.
     if (estimate && std::isfinite(estimate->half_width[figure])) {
-      answers.push_back({number, error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
-                         estimate->half_width[figure], load_class_of(estimate->value[Figure::use])});
+      answers.push_back(
+          {number, estimate::error_of(figure, estimate->value[figure], study.truth[number].value[figure]),
+           estimate->half_width[figure], estimate::load_class_of(estimate->value[estimate::Figure::use])});
     }
   }
   return answers;
@@ -46,7 +47,7 @@ std::optional<double> allowance_of(const SimulatorStudy& study, const std::vecto
   if (excesses.empty()) {
     return std::nullopt;
   }
-  return upper_quantile(std::move(excesses), stated_confidence);
+  return estimate::upper_quantile(std::move(excesses), estimate::stated_confidence);
 }
 
 std::optional<double> cover_widened(const SimulatorStudy& study, const std::vector<Answer>& answers) {
@@ -66,7 +67,7 @@ std::optional<double> cover_widened(const SimulatorStudy& study, const std::vect
   return static_cast<double>(covered) / static_cast<double>(asked);
 }
 
-FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figure figure) {
+FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, estimate::Figure figure) {
   const std::vector<Answer> answers = answers_of(study, method, figure);
   FigureErrors result;
   if (answers.empty()) {
@@ -80,13 +81,13 @@ FigureErrors figure_errors(const SimulatorStudy& study, std::size_t method, Figu
     stated += answer.half_width > 0.0 ? 1 : 0;
     covered += answer.half_width > 0.0 && answer.excess() == 0.0 ? 1 : 0;
   }
-  result.summary = summarise(errors);
+  result.summary = estimate::summarise(errors);
   result.summary.worst_case = answers[result.summary.worst_case].number;
   if (stated > 0) {
     result.covered = static_cast<double>(covered) / static_cast<double>(stated);
   }
   result.covered_widened = cover_widened(study, answers);
-  for (std::size_t i = 0; i < load_classes.size(); ++i) {
+  for (std::size_t i = 0; i < estimate::load_classes.size(); ++i) {
     result.allowance[i] = allowance_of(study, answers, i, std::nullopt);
   }
   return result;
@@ -105,22 +106,22 @@ void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& er
       if (study.cases[number].frame != frame) {
         continue;
       }
-      const MachineFigures& exact = study.truth[number].value;
-      const std::optional<Estimate>& estimate = study.estimates[method][number];
-      const double end = estimate ? estimate->value[Figure::end] : exact[Figure::end];
+      const estimate::MachineFigures& exact = study.truth[number].value;
+      const std::optional<estimate::Estimate>& estimate = study.estimates[method][number];
+      const double end = estimate ? estimate->value[estimate::Figure::end] : exact[estimate::Figure::end];
       const auto nodes = static_cast<double>(study.cases[number].nodes);
-      truth.push_back(exact[Figure::end]);
+      truth.push_back(exact[estimate::Figure::end]);
       found.push_back(end);
       // Speed-up times efficiency is 1 / (end^2 nodes), but for a factor.
-      true_power.push_back(exact[Figure::end] * exact[Figure::end] * nodes);
+      true_power.push_back(exact[estimate::Figure::end] * exact[estimate::Figure::end] * nodes);
       found_power.push_back(end * end * nodes);
     }
-    if (const std::optional<double> tau = kendall_tau(truth, found)) {
+    if (const std::optional<double> tau = estimate::kendall_tau(truth, found)) {
       ranked = true;
       errors.least_tau = std::min(errors.least_tau, *tau);
     }
-    errors.regret = std::max(errors.regret, regret(truth, found));
-    errors.power_regret = std::max(errors.power_regret, regret(true_power, found_power));
+    errors.regret = std::max(errors.regret, estimate::regret(truth, found));
+    errors.power_regret = std::max(errors.power_regret, estimate::regret(true_power, found_power));
   }
   errors.least_tau = ranked ? errors.least_tau : 1.0;
 }
@@ -128,43 +129,44 @@ void add_ranks(const SimulatorStudy& study, std::size_t method, MethodErrors& er
 }  // namespace
 
 std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
-  std::vector<MethodErrors> all(simulator_methods().size());
+  std::vector<MethodErrors> all(estimate::simulator_methods().size());
   for (std::size_t method = 0; method < all.size(); ++method) {
-    const std::vector<std::optional<Estimate>>& estimates = study.estimates[method];
+    const std::vector<std::optional<estimate::Estimate>>& estimates = study.estimates[method];
     MethodErrors& errors = all[method];
     errors.any = std::any_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.has_value(); });
     if (!errors.any) {
       continue;
     }
-    for (std::size_t figure = 0; figure < figure_count; ++figure) {
-      errors.figures[figure] = figure_errors(study, method, static_cast<Figure>(figure));
+    for (std::size_t figure = 0; figure < estimate::figure_count; ++figure) {
+      errors.figures[figure] = figure_errors(study, method, static_cast<estimate::Figure>(figure));
     }
     add_ranks(study, method, errors);
   }
   return all;
 }
 
-std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study) {
-  std::array<std::vector<Answer>, figure_count> answers;
-  for (std::size_t i = 0; i < figure_count; ++i) {
-    for (std::size_t method = 0; method < simulator_methods().size(); ++method) {
-      if (simulator_methods()[method].kind == MethodKind::sampled) {
-        for (const Answer& answer : answers_of(study, method, static_cast<Figure>(i))) {
-          if (2 * simulator_methods()[method].strata >= least_windows[answer.load_class]) {
+std::vector<estimate::MeasuredError> measured_errors_of(const SimulatorStudy& study) {
+  std::array<std::vector<Answer>, estimate::figure_count> answers;
+  for (std::size_t i = 0; i < estimate::figure_count; ++i) {
+    for (std::size_t method = 0; method < estimate::simulator_methods().size(); ++method) {
+      if (estimate::simulator_methods()[method].kind == estimate::MethodKind::sampled) {
+        for (const Answer& answer : answers_of(study, method, static_cast<estimate::Figure>(i))) {
+          if (2 * estimate::simulator_methods()[method].strata >=
+              estimate::least_windows[answer.load_class]) {
             answers[i].push_back(answer);
           }
         }
       }
     }
   }
-  std::vector<MeasuredError> errors;
-  for (std::size_t load = 0; load < load_classes.size(); ++load) {
-    MeasuredError error{load_classes[load], 0, 1.0, {}};
-    for (std::size_t i = 0; i < figure_count; ++i) {
+  std::vector<estimate::MeasuredError> errors;
+  for (std::size_t load = 0; load < estimate::load_classes.size(); ++load) {
+    estimate::MeasuredError error{estimate::load_classes[load], 0, 1.0, {}};
+    for (std::size_t i = 0; i < estimate::figure_count; ++i) {
       std::vector<Answer> of_class = answers[i];  // coverage is counted of the class alone
       std::erase_if(of_class, [&](const Answer& answer) { return answer.load_class != load; });
       if (const std::optional<double> allowance = allowance_of(study, of_class, load, std::nullopt)) {
-        error.allowance[static_cast<Figure>(i)] = *allowance;
+        error.allowance[static_cast<estimate::Figure>(i)] = *allowance;
         error.covered = std::min(error.covered, cover_widened(study, of_class).value_or(0.0));
         error.cases = std::max(error.cases, of_class.size());
       }
@@ -176,4 +178,4 @@ std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study) {
   return errors;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -10,11 +10,11 @@
 #include "studies/estimate/error_metrics.h"
 #include "studies/estimate/measured_errors.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// One figure by one method, over all cases that it has an answer for.
 struct FigureErrors {
-  ErrorSummary summary;           ///< worst_case is an index into SimulatorStudy::cases
+  estimate::ErrorSummary summary;  ///< worst_case is an index into SimulatorStudy::cases
   std::optional<double> covered;  ///< share of cases in the method's interval; std::nullopt if it states none
   /// That share with the interval widened by an allowance measured on the other scenes; std::nullopt with one
   /// scene.
@@ -22,12 +22,12 @@ struct FigureErrors {
   /// What a half-width must be widened by, for each class, measured on all scenes: the conformal
   /// stated_confidence quantile of the amounts by which errors exceed the method's own half-widths.
   /// std::nullopt without cases.
-  std::array<std::optional<double>, load_classes.size()> allowance;
+  std::array<std::optional<double>, estimate::load_classes.size()> allowance;
 };
 
 struct MethodErrors {
   bool any = false;  ///< there is an answer to a case
-  std::array<FigureErrors, figure_count> figures;
+  std::array<FigureErrors, estimate::figure_count> figures;
   double least_tau = 0.0;     ///< Kendall's, of frame times; the least of all frames
   double regret = 0.0;        ///< of choosing the shortest frame time; that of the worst frame
   double power_regret = 0.0;  ///< of choosing the most speed-up times efficiency; that of the worst frame
@@ -40,6 +40,6 @@ struct MethodErrors {
 
 /// What `marti run --within` rests on: the errors of samples of all sizes that it takes. Classes of load that
 /// no case is of are missing.
-[[nodiscard]] std::vector<MeasuredError> measured_errors_of(const SimulatorStudy& study);
+[[nodiscard]] std::vector<estimate::MeasuredError> measured_errors_of(const SimulatorStudy& study);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

@@ -10,7 +10,7 @@
 #include "studies/estimate/simulator_figures.h"
 #include "studies/estimate/simulator_methods.h"
 
-namespace marti::studies {
+namespace marti::studies::error {
 
 /// A machine on a frame.
 struct ErrorCase {
@@ -32,10 +32,10 @@ struct LevelAccesses {
 };
 
 struct SimulatorStudy {
-  std::vector<ErrorCase> cases;  ///< frame by frame, cache by cache, by ascending nodes
-  std::vector<Estimate> truth;   ///< of each case, by exact replay
+  std::vector<ErrorCase> cases;           ///< frame by frame, cache by cache, by ascending nodes
+  std::vector<estimate::Estimate> truth;  ///< of each case, by exact replay
   /// [method][case], methods as in simulator_methods(); std::nullopt where a method has no answer.
-  std::vector<std::vector<std::optional<Estimate>>> estimates;
+  std::vector<std::vector<std::optional<estimate::Estimate>>> estimates;
   /// [method][repeat]: processor seconds of runs that answer every case, from the scene to the figures of the
   /// machine and of one node, by interpolation too.
   std::vector<std::vector<double>> cpu_seconds;
@@ -46,4 +46,4 @@ struct SimulatorStudy {
 /// the same results, except for cpu_seconds. Throws UserError.
 [[nodiscard]] SimulatorStudy study_simulator(const ErrorConfig& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::error

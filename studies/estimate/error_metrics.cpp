@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -90,4 +90,4 @@ MedianInterval median_interval(std::vector<double> values) {
           1.0 - std::pow(2.0, 1.0 - static_cast<double>(values.size()))};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// Kendall's rank correlation tau-b of two lists of equal length (M. G. Kendall, "The treatment of ties in
 /// ranking problems", Biometrika 33(3), 1945): 1 when both put all pairs in the same order, -1 when in the
@@ -50,4 +50,4 @@ struct MedianInterval {
 /// Throws InternalError for no values.
 [[nodiscard]] MedianInterval median_interval(std::vector<double> values);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

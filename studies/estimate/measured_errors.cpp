@@ -10,7 +10,7 @@
 #include "sim/error.h"
 #include "studies/estimate/simulator_methods.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -114,4 +114,4 @@ std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
   return errors;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -12,7 +12,7 @@
 
 #include "studies/estimate/simulator_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// Errors are measured apart for machines whose interconnect is busy up to these shares of the frame: how far
 /// the contention in a sample is from that in the frame depends on it.
@@ -44,4 +44,4 @@ struct MeasuredError {
 /// version of the methods.
 [[nodiscard]] std::vector<MeasuredError> parse_measured_errors(std::string_view csv);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
-sim::Ticks schedule_packets(const processors::HostConfig& config, std::uint32_t nodes,
+sim::Ticks schedule_packets(const processors::machine::HostConfig& config, std::uint32_t nodes,
                             std::span<const sim::Ticks> packets) {
-  processors::Host host(config, packets.size(), nodes);
+  processors::node::Host host(config, packets.size(), nodes);
   using Free = std::pair<sim::Ticks, std::uint32_t>;  // when a node is free, and which node
   std::priority_queue<Free, std::vector<Free>, std::greater<>> free;
   for (std::uint32_t node = 0; node < nodes; ++node) {
@@ -28,4 +28,4 @@ sim::Ticks schedule_packets(const processors::HostConfig& config, std::uint32_t 
   return end;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

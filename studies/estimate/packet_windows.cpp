@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "sim/mix.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::uint64_t strata_of(std::uint64_t windows, std::uint64_t wanted) {
 }
 
 template <class Use>
-void for_each_pixel(const processors::Packet& packet, const Use& use) {
+void for_each_pixel(const processors::machine::Packet& packet, const Use& use) {
   for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
     for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
       use(x, y);
@@ -56,7 +56,7 @@ bool all_chosen(std::span<const Stratum> strata) {
                      [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
 }
 
-PacketWindows::PacketWindows(const processors::PacketList& packets, std::uint64_t length,
+PacketWindows::PacketWindows(const processors::machine::PacketList& packets, std::uint64_t length,
                              std::uint64_t strata, std::uint64_t seed)
     : packets_(packets),
       length_(std::min(length, packets.size())),
@@ -73,7 +73,7 @@ std::vector<std::uint64_t> PacketWindows::chosen() const {
   return packets;
 }
 
-void PacketWindows::add_to(processors::PixelSet& pixels) const {
+void PacketWindows::add_to(processors::program::PixelSet& pixels) const {
   for (const std::uint64_t packet : chosen()) {
     for_each_pixel(packets_[packet], [&](std::uint32_t x, std::uint32_t y) { pixels.add(x, y); });
   }
@@ -90,8 +90,8 @@ PixelLattice::Axis::Axis(std::uint32_t size) {
 
 PixelLattice::PixelLattice(std::uint32_t width, std::uint32_t height) : columns_(width), rows_(height) {}
 
-std::vector<processors::PixelPlace> PixelLattice::pixels() const {
-  std::vector<processors::PixelPlace> pixels;
+std::vector<processors::walk::PixelPlace> PixelLattice::pixels() const {
+  std::vector<processors::walk::PixelPlace> pixels;
   pixels.reserve(size());
   for (const std::uint32_t y : rows_.places) {
     for (const std::uint32_t x : columns_.places) {
@@ -101,14 +101,14 @@ std::vector<processors::PixelPlace> PixelLattice::pixels() const {
   return pixels;
 }
 
-void PixelLattice::add_to(processors::PixelSet& pixels) const {
-  for (const processors::PixelPlace& pixel : this->pixels()) {
+void PixelLattice::add_to(processors::program::PixelSet& pixels) const {
+  for (const processors::walk::PixelPlace& pixel : this->pixels()) {
     pixels.add(pixel.x, pixel.y);
   }
 }
 
 std::vector<double> PixelLattice::expected_of_packets(std::span<const double> values,
-                                                      const processors::PacketList& packets) const {
+                                                      const processors::machine::PacketList& packets) const {
   sim::ensure(values.size() == size(), "values of another lattice");
   std::vector<double> expected(packets.size());
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
@@ -147,13 +147,13 @@ double PixelLattice::half_width(std::span<const double> values) const {
   return normal_95 * pixels * std::sqrt((1.0 - n / pixels) * 0.5 * squares / pairs / n);
 }
 
-PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLog& log) const {
+PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::program::WorkLog& log) const {
   ImageWork work;
-  for (const processors::PixelPlace& pixel : pixels()) {
+  for (const processors::walk::PixelPlace& pixel : pixels()) {
     const std::span<const std::uint32_t> words = log.pixel(pixel.x, pixel.y);
     work.words += static_cast<double>(words.size());
-    for (std::size_t at = 0; at < words.size(); at += processors::step_words(&words[at])) {
-      work.rays += processors::step_of(words[at]) == processors::Step::ray ? 1.0 : 0.0;
+    for (std::size_t at = 0; at < words.size(); at += processors::program::step_words(&words[at])) {
+      work.rays += processors::program::step_of(words[at]) == processors::program::Step::ray ? 1.0 : 0.0;
     }
   }
   const double scale =
@@ -161,4 +161,4 @@ PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::WorkLo
   return {scale * work.rays, scale * work.words};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

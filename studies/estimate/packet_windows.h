@@ -16,7 +16,7 @@
 #include "processors/program/work_log.h"
 #include "processors/walk/observer.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// A stratum: the units first .. end - 1, of which the chosen ones are in the sample.
 struct Stratum {
@@ -39,7 +39,7 @@ class PacketWindows {
   /// `length`: packets of a window, at least 1; the last window has up to twice as many less one. A window is
   /// as long as the frame when that has fewer packets. `strata`: how many are wanted; halved until there are
   /// at most half as many as windows, but at least one.
-  PacketWindows(const processors::PacketList& packets, std::uint64_t length, std::uint64_t strata,
+  PacketWindows(const processors::machine::PacketList& packets, std::uint64_t length, std::uint64_t strata,
                 std::uint64_t seed);
 
   [[nodiscard]] std::uint64_t windows() const { return windows_; }
@@ -48,7 +48,7 @@ class PacketWindows {
   [[nodiscard]] std::uint64_t end(std::uint64_t window) const {
     return window + 1 == windows_ ? packets_.size() : (window + 1) * length_;
   }
-  [[nodiscard]] const processors::PacketList& packets() const { return packets_; }
+  [[nodiscard]] const processors::machine::PacketList& packets() const { return packets_; }
   /// Calls use(window) for each window drawn, ascending.
   template <class Use>
   void for_each_drawn(const Use& use) const {
@@ -63,10 +63,10 @@ class PacketWindows {
   [[nodiscard]] bool has_all() const { return all_chosen(strata_); }
 
   /// Adds all pixels of the windows drawn.
-  void add_to(processors::PixelSet& pixels) const;
+  void add_to(processors::program::PixelSet& pixels) const;
 
  private:
-  processors::PacketList packets_;
+  processors::machine::PacketList packets_;
   std::uint64_t length_;
   std::uint64_t windows_;
   std::vector<Stratum> strata_;
@@ -80,13 +80,13 @@ class PixelLattice {
 
   PixelLattice(std::uint32_t width, std::uint32_t height);
 
-  void add_to(processors::PixelSet& pixels) const;
+  void add_to(processors::program::PixelSet& pixels) const;
   /// Row by row.
-  [[nodiscard]] std::vector<processors::PixelPlace> pixels() const;
+  [[nodiscard]] std::vector<processors::walk::PixelPlace> pixels() const;
   /// What each packet would have if each of its pixels had what the lattice's pixel next to it has. `values`
   /// are those of pixels(), in their order.
   [[nodiscard]] std::vector<double> expected_of_packets(std::span<const double> values,
-                                                        const processors::PacketList& packets) const;
+                                                        const processors::machine::PacketList& packets) const;
   /// Half of the 95 % interval of the sum over all the image's pixels, by `values`, which are those of
   /// pixels(). The variance of a systematic sample is estimated by the differences of neighbours (K. M.
   /// Wolter, "Introduction to variance estimation", 2nd ed. 2007, section 8.2). Infinite for a single pixel.
@@ -96,7 +96,7 @@ class PixelLattice {
     double rays = 0.0;
     double words = 0.0;
   };
-  [[nodiscard]] ImageWork expected_of_image(const processors::WorkLog& log) const;
+  [[nodiscard]] ImageWork expected_of_image(const processors::program::WorkLog& log) const;
 
  private:
   // The lattice's columns (or rows) and, for each column of the image, the number of the one next to it.
@@ -110,4 +110,4 @@ class PixelLattice {
   Axis rows_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -6,7 +6,7 @@
 
 #include "studies/estimate/error_metrics.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -104,4 +104,4 @@ double half_width_of(std::span<const Stratum> strata, std::span<const double> re
   return student_95(degrees) * std::sqrt(variance);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -7,7 +7,7 @@
 
 #include "studies/estimate/packet_windows.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// What is known of a unit, or of several: the time that they take if every reference hits, and the misses
 /// that are expected of them.
@@ -39,4 +39,4 @@ struct RegressionEstimate {
 [[nodiscard]] double half_width_of(std::span<const Stratum> strata, std::span<const double> residues,
                                    std::uint64_t degrees);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

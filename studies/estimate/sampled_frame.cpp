@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 SampledFrame::SampledFrame(std::uint32_t width, std::uint32_t height, Trace trace)
     : lattice_(width, height),
@@ -10,8 +10,8 @@ SampledFrame::SampledFrame(std::uint32_t width, std::uint32_t height, Trace trac
       traced_(width, height),
       pixels_(static_cast<double>(width) * height) {}
 
-processors::PixelSet SampledFrame::set_with(const PacketWindows& windows) const {
-  processors::PixelSet set = traced_;
+processors::program::PixelSet SampledFrame::set_with(const PacketWindows& windows) const {
+  processors::program::PixelSet set = traced_;
   lattice_.add_to(set);
   windows.add_to(set);
   return set;
@@ -26,20 +26,20 @@ TracedPart SampledFrame::traced() const {
   return {static_cast<double>(traced_.count()) / pixels_, rays, 4.0 * (words + pixels_)};
 }
 
-const processors::WorkLog& SampledFrame::with(const PacketWindows& windows) {
+const processors::program::WorkLog& SampledFrame::with(const PacketWindows& windows) {
   trace(set_with(windows));
   return *frame_->log;
 }
 
-processors::Frame SampledFrame::whole() && {
-  processors::PixelSet all(traced_.width(), traced_.height());
+processors::program::Frame SampledFrame::whole() && {
+  processors::program::PixelSet all(traced_.width(), traced_.height());
   all.add_all();
   trace(all);
   return std::move(*frame_);
 }
 
-void SampledFrame::trace(const processors::PixelSet& wanted) {
-  processors::PixelSet missing = wanted;
+void SampledFrame::trace(const processors::program::PixelSet& wanted) {
+  processors::program::PixelSet missing = wanted;
   missing.remove(traced_);
   if (frame_ && missing.count() == 0) {
     return;
@@ -48,12 +48,12 @@ void SampledFrame::trace(const processors::PixelSet& wanted) {
   traced_ = wanted;
 }
 
-SampledFrame sampled_frame(const PreparedFrame& prepared) {
-  const processors::RenderOptions& render = prepared.config().render;
+SampledFrame sampled_frame(const run::PreparedFrame& prepared) {
+  const processors::program::RenderOptions& render = prepared.config().render;
   return {render.width, render.height,
-          [&prepared](const processors::PixelSet& only, const processors::Frame* before) {
+          [&prepared](const processors::program::PixelSet& only, const processors::program::Frame* before) {
             return prepared.trace(&only, before);
           }};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -10,7 +10,7 @@
 #include "studies/estimate/packet_windows.h"
 #include "studies/run/prepared_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// What was traced of a frame, and what the whole would have been by the pixels of the lattice.
 struct TracedPart {
@@ -23,8 +23,8 @@ struct TracedPart {
 class SampledFrame {
  public:
   /// Traces the pixels of a set and adds them to a frame that has others already, if that is not null.
-  using Trace =
-      std::function<processors::Frame(const processors::PixelSet& only, const processors::Frame* before)>;
+  using Trace = std::function<processors::program::Frame(const processors::program::PixelSet& only,
+                                                         const processors::program::Frame* before)>;
 
   SampledFrame(std::uint32_t width, std::uint32_t height, Trace trace);
 
@@ -32,26 +32,26 @@ class SampledFrame {
   /// The share of all pixels that would be traced after with(windows).
   [[nodiscard]] double share_with(const PacketWindows& windows) const;
   /// The log of the lattice, of these windows and of all that was traced before.
-  const processors::WorkLog& with(const PacketWindows& windows);
+  const processors::program::WorkLog& with(const PacketWindows& windows);
   /// with() must have been called.
   [[nodiscard]] TracedPart traced() const;
   /// What is traced. with() must have been called.
-  [[nodiscard]] const processors::Frame& part() const { return *frame_; }
+  [[nodiscard]] const processors::program::Frame& part() const { return *frame_; }
   /// Traces all that is missing, and gives the whole frame away.
-  [[nodiscard]] processors::Frame whole() &&;
+  [[nodiscard]] processors::program::Frame whole() &&;
 
  private:
-  [[nodiscard]] processors::PixelSet set_with(const PacketWindows& windows) const;
-  void trace(const processors::PixelSet& wanted);
+  [[nodiscard]] processors::program::PixelSet set_with(const PacketWindows& windows) const;
+  void trace(const processors::program::PixelSet& wanted);
 
   PixelLattice lattice_;
   Trace trace_;
-  processors::PixelSet traced_;
+  processors::program::PixelSet traced_;
   double pixels_;
-  std::optional<processors::Frame> frame_;  // empty before anything is traced
+  std::optional<processors::program::Frame> frame_;  // empty before anything is traced
 };
 
 /// Of a frame that is ready to be traced; it must outlive what is returned.
-[[nodiscard]] SampledFrame sampled_frame(const PreparedFrame& prepared);
+[[nodiscard]] SampledFrame sampled_frame(const run::PreparedFrame& prepared);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

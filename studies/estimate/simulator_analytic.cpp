@@ -13,9 +13,9 @@
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 namespace {
 
@@ -63,11 +63,11 @@ struct PacketsWork {
   double dispatch = 0.0;  // to dispatch a packet
 };
 
-sim::Ticks compute_ticks(const MachineConfig& machine, const processors::WorkLog& log,
-                         const processors::StepCounts& steps, std::int64_t hits) {
-  processors::TimeDivision time{};
-  processors::add_counted_time(processors::step_ticks(machine, log), steps, hits, time);
-  return processors::sum_of(time);
+sim::Ticks compute_ticks(const MachineConfig& machine, const processors::program::WorkLog& log,
+                         const processors::cost::StepCounts& steps, std::int64_t hits) {
+  processors::cost::TimeDivision time{};
+  processors::cost::add_counted_time(processors::cost::step_ticks(machine, log), steps, hits, time);
+  return processors::cost::sum_of(time);
 }
 
 // Contention of the nodes, as customers of a closed network.
@@ -169,20 +169,21 @@ std::vector<std::vector<std::uint64_t>> packets_to_walk(std::uint64_t packets, s
 }  // namespace
 
 void check_analytic(const MachineConfig& machine) {
-  processors::check_sampled(machine);
+  processors::replay::check_sampled(machine);
   const auto refuse = [](const char* key, const std::string& reason) {
     throw sim::KeyError(key, "the analytic model is for " + reason + " only");
   };
   if (machine.clusters > 1) {
     refuse("machine.clusters", "one cluster");
   }
-  if (machine.placement != processors::Placement::shared) {
+  if (machine.placement != processors::machine::Placement::shared) {
     refuse("database.placement", "database.placement = \"shared\"");
   }
-  if (machine.cache.organisation != processors::CacheOrganisation::unified ||
+  if (machine.cache.organisation != processors::machine::CacheOrganisation::unified ||
       machine.cache.cache.replacement != memory::Replacement::lru) {
-    refuse(machine.cache.organisation != processors::CacheOrganisation::unified ? "cache.organisation"
-                                                                                : "cache.replacement",
+    refuse(machine.cache.organisation != processors::machine::CacheOrganisation::unified
+               ? "cache.organisation"
+               : "cache.replacement",
            "unified LRU caches");
   }
   if (machine.banks.dram) {
@@ -195,19 +196,20 @@ void check_analytic(const MachineConfig& machine) {
   }
 }
 
-std::vector<Estimate> estimate_analytically(const processors::WorkLog& log, const MachineConfig& machine,
+std::vector<Estimate> estimate_analytically(const processors::program::WorkLog& log,
+                                            const MachineConfig& machine,
                                             std::span<const memory::CacheShape> caches,
                                             const AnalyticOptions& options) {
   check_analytic(machine);
   PacketsWork work;
-  work.words = processors::words_of_packets(log, machine.packets);
+  work.words = processors::passes::words_of_packets(log, machine.packets);
   work.packets = static_cast<double>(work.words.size());
   work.writes = static_cast<double>(log.width) * static_cast<double>(log.height);
   work.dispatch = static_cast<double>(machine.host.clock.cycles(machine.host.latency_cycles));
   const std::uint64_t nodes = std::min<std::uint64_t>(machine.all_nodes(), work.words.size());
   const std::uint64_t walked = std::min<std::uint64_t>(std::max(options.walked_nodes, 1U), nodes);
   const std::vector<std::vector<std::uint64_t>> packets = packets_to_walk(work.words.size(), nodes, walked);
-  const processors::OnePass pass = processors::one_pass(log, machine, caches, packets);
+  const processors::passes::OnePass pass = processors::passes::one_pass(log, machine, caches, packets);
   const auto all_words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
   work.scale = pass.words > 0 ? all_words / static_cast<double>(pass.words) : 1.0;
 
@@ -237,4 +239,4 @@ std::vector<Estimate> estimate_analytically(const processors::WorkLog& log, cons
   return estimates;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -11,12 +11,12 @@
 #include "processors/program/work_log.h"
 #include "studies/estimate/simulator_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// Throws UserError with the reason unless the machine is one cluster of the image scheme with a given tree,
 /// dynamic assignment, one context without prefetching, unified LRU caches of one level, a shared database,
 /// and an ideal interconnect or a bus first come, first served.
-void check_analytic(const processors::MachineConfig& machine);
+void check_analytic(const processors::machine::MachineConfig& machine);
 
 struct AnalyticOptions {
   /// Nodes whose packets are walked; at most all there are.
@@ -29,9 +29,9 @@ struct AnalyticOptions {
 /// the bus and the banks as queues, for every number of nodes that are busy at the same time; packets take
 /// times in proportion to their words in the log. Each estimate's work is that of the whole pass. The
 /// estimate for one node with an ideal interconnect is exact unless its write buffer fills.
-[[nodiscard]] std::vector<Estimate> estimate_analytically(const processors::WorkLog& log,
-                                                          const processors::MachineConfig& machine,
+[[nodiscard]] std::vector<Estimate> estimate_analytically(const processors::program::WorkLog& log,
+                                                          const processors::machine::MachineConfig& machine,
                                                           std::span<const memory::CacheShape> caches,
                                                           const AnalyticOptions& options);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

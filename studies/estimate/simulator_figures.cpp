@@ -4,16 +4,17 @@
 
 #include "studies/figures/derived_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
-MachineFigures figures_of(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+MachineFigures figures_of(const processors::machine::MachineConfig& machine,
+                          const processors::replay::MachineResult& result) {
   MachineFigures figures;
   figures[Figure::end] = static_cast<double>(result.end);
   figures[Figure::misses] = static_cast<double>(result.references().all_misses());
-  figures[Figure::use] = figure_of(machine, result, "interconnect_utilisation").value_or(0.0);
+  figures[Figure::use] = figures::figure_of(machine, result, "interconnect_utilisation").value_or(0.0);
   double waited = 0.0;
   double tenures = 0.0;
-  for (const processors::ClusterResult& cluster : result.clusters) {
+  for (const processors::replay::ClusterResult& cluster : result.clusters) {
     waited += static_cast<double>(cluster.interconnect.waits.sum);
     tenures += static_cast<double>(cluster.interconnect.waits.count);
   }
@@ -37,4 +38,4 @@ void add_speed_up(Estimate& machine, const Estimate& one_node) {
   machine.half_width[Figure::speed_up] = machine.half_width[Figure::end] + one_node.half_width[Figure::end];
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

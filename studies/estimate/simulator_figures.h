@@ -8,7 +8,7 @@
 #include "processors/machine/machine_config.h"
 #include "processors/replay/replay.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// What is estimated. Errors of all but `use` are relative to the true value; that of `use` is a difference.
 enum class Figure : std::uint8_t {
@@ -44,8 +44,8 @@ struct Estimate {
 };
 
 /// The figures of a replay of all packets.
-[[nodiscard]] MachineFigures figures_of(const processors::MachineConfig& machine,
-                                        const processors::MachineResult& result);
+[[nodiscard]] MachineFigures figures_of(const processors::machine::MachineConfig& machine,
+                                        const processors::replay::MachineResult& result);
 
 /// The error of an estimate: relative, or for `use` a difference. With a true value of 0: 0 when the estimate
 /// is 0 too, else infinite.
@@ -54,4 +54,4 @@ struct Estimate {
 /// Adds the speed-up of `machine` over `one_node`, with the sum of both half-widths of the time.
 void add_speed_up(Estimate& machine, const Estimate& one_node);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

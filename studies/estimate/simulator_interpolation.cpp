@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -91,4 +91,4 @@ Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<con
   return estimate;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -6,7 +6,7 @@
 
 #include "studies/estimate/simulator_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// linear: straight lines between the points. cubic: the monotone piecewise cubic of F. N. Fritsch and
 /// R. E. Carlson (SIAM J. Numer. Anal. 17(2), 1980) with the slopes of F. N. Fritsch and J. Butland (SIAM J.
@@ -23,4 +23,4 @@ enum class Curve : std::uint8_t { linear, cubic };
 [[nodiscard]] Estimate estimate_between(Curve curve, std::span<const double> xs,
                                         std::span<const MachineFigures> machines, double x);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -8,7 +8,7 @@
 #include "studies/estimate/simulator_sample.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -56,7 +56,7 @@ std::string Method::knob() const {
     case MethodKind::analytic:
       return all_caches                  ? "all nodes walked, all caches at once"
              : walked_nodes == all_nodes ? "all nodes walked"
-                                         : counted(walked_nodes, "node") + " walked";
+                                         : tables::counted(walked_nodes, "node") + " walked";
     case MethodKind::interpolated:
       return std::string(over_caches ? "cache sizes" : "node counts") +
              (curve == Curve::linear ? ", linear" : ", cubic");
@@ -69,7 +69,7 @@ std::span<const Method> simulator_methods() {
   return methods;
 }
 
-void check_method(const Method& method, const processors::MachineConfig& machine) {
+void check_method(const Method& method, const processors::machine::MachineConfig& machine) {
   switch (method.kind) {
     case MethodKind::exact:
     case MethodKind::interpolated:
@@ -83,8 +83,8 @@ void check_method(const Method& method, const processors::MachineConfig& machine
   }
 }
 
-Estimate estimate(const Method& method, const processors::WorkLog& log,
-                  const processors::MachineConfig& machine) {
+Estimate estimate(const Method& method, const processors::program::WorkLog& log,
+                  const processors::machine::MachineConfig& machine) {
   sim::ensure(answers_alone(method), "a method that does not answer for one machine alone");
   switch (method.kind) {
     case MethodKind::analytic: {
@@ -97,15 +97,15 @@ Estimate estimate(const Method& method, const processors::WorkLog& log,
     case MethodKind::exact:
       break;
   }
-  const processors::MachineResult result = processors::replay(log, machine);
+  const processors::replay::MachineResult result = processors::replay::replay(log, machine);
   Estimate estimate;
   estimate.value = figures_of(machine, result);
   estimate.references = static_cast<double>(result.references().references());
   estimate.events = result.events;
-  for (const processors::LogRow& row : log.rows) {
+  for (const processors::program::LogRow& row : log.rows) {
     estimate.words += row.words.size();
   }
   return estimate;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -11,7 +11,7 @@
 #include "studies/estimate/simulator_figures.h"
 #include "studies/estimate/simulator_interpolation.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// Changes whenever a method answers differently or the list below is another: measured errors
 /// (measured_errors.h) are those of one version.
@@ -47,10 +47,10 @@ struct Method {
 
 /// The estimate for one machine, without the speed-up, by a method that answers alone. Throws UserError for a
 /// machine that the method cannot answer for.
-[[nodiscard]] Estimate estimate(const Method& method, const processors::WorkLog& log,
-                                const processors::MachineConfig& machine);
+[[nodiscard]] Estimate estimate(const Method& method, const processors::program::WorkLog& log,
+                                const processors::machine::MachineConfig& machine);
 
 /// Throws UserError with the reason when a method cannot answer for the machine.
-void check_method(const Method& method, const processors::MachineConfig& machine);
+void check_method(const Method& method, const processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

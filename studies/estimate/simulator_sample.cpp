@@ -11,7 +11,7 @@
 #include "sim/key_error.h"
 #include "studies/estimate/packet_schedule.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -21,7 +21,7 @@ constexpr double not_bounded = std::numeric_limits<double>::infinity();
 // The misses of a pixel whose neighbour the node has just walked. Those that it has after itself do not fit
 // the cache together; and one pixel's step brings in a fraction of the lines that the lattice's step brings
 // in.
-double expected_misses(const processors::PixelFigures& pixel) {
+double expected_misses(const processors::passes::PixelFigures& pixel) {
   const auto brought_in = static_cast<double>(std::max<std::int64_t>(0, pixel.misses - pixel.misses_again));
   return static_cast<double>(pixel.misses_again) + brought_in / PixelLattice::step;
 }
@@ -35,13 +35,15 @@ struct WindowTotals {
   std::vector<double> references;
 };
 
-WindowTotals totals_of_windows(const PacketWindows& windows, const processors::MachineConfig& machine,
-                               std::span<const processors::PacketFigures> packets, const LatticeWork& work) {
+WindowTotals totals_of_windows(const PacketWindows& windows,
+                               const processors::machine::MachineConfig& machine,
+                               std::span<const processors::walk::PacketFigures> packets,
+                               const LatticeWork& work) {
   const auto hit = static_cast<double>(machine.clock.cycles(machine.cache.hit_cycles));
   WindowTotals totals;
   std::size_t at = 0;
   windows.for_each_drawn([&](std::uint64_t window) {
-    processors::PacketFigures sum;
+    processors::walk::PacketFigures sum;
     KnownWork known;
     for (std::uint64_t packet = windows.first(window); packet < windows.end(window); ++packet, ++at) {
       sum.time = sim::add_ticks(sum.time, packets[at].time);
@@ -97,22 +99,24 @@ void describe_end(const RegressionEstimate& part, double other, const LatticeWor
 
 std::uint64_t window_length(std::uint32_t nodes) { return std::max<std::uint64_t>(nodes, shortest_window); }
 
-void check_sample(const processors::MachineConfig& machine) {
-  processors::check_sampled(machine);
+void check_sample(const processors::machine::MachineConfig& machine) {
+  processors::replay::check_sampled(machine);
   if (machine.clusters > 1) {
     throw sim::KeyError("machine.clusters", "a sample is taken with machine.clusters = 1 only");
   }
-  if (machine.placement != processors::Placement::shared) {
+  if (machine.placement != processors::machine::Placement::shared) {
     throw sim::KeyError("database.placement", "a sample is taken with database.placement = \"shared\" only");
   }
 }
 
-LatticeWork::LatticeWork(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                         const PixelLattice& lattice, const processors::PacketList& packets)
+LatticeWork::LatticeWork(const processors::program::WorkLog& log,
+                         const processors::machine::MachineConfig& machine, const PixelLattice& lattice,
+                         const processors::machine::PacketList& packets)
     : lattice_(lattice) {
   std::vector<double> times;
   std::vector<double> misses;
-  for (const processors::PixelFigures& pixel : processors::pixel_figures(log, machine, lattice.pixels())) {
+  for (const processors::passes::PixelFigures& pixel :
+       processors::passes::pixel_figures(log, machine, lattice.pixels())) {
     of_pixels_.push_back({static_cast<double>(pixel.hit_time), expected_misses(pixel)});
     times.push_back(of_pixels_.back().hit_time);
     misses.push_back(of_pixels_.back().misses);
@@ -135,12 +139,14 @@ double LatticeWork::half_width(const KnownWork& counts_for) const {
   return lattice_.half_width(values);
 }
 
-SampledMachine sample_machine(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                              const PacketWindows& windows, const LatticeWork& work) {
+SampledMachine sample_machine(const processors::program::WorkLog& log,
+                              const processors::machine::MachineConfig& machine, const PacketWindows& windows,
+                              const LatticeWork& work) {
   const std::vector<std::uint64_t> chosen = windows.chosen();
-  const processors::PacketSample sample(chosen, windows.packets().size(),
-                                        processors::PacketSample::all_before);
-  const processors::MachineResult result = processors::replay(log, machine, {.sample = &sample});
+  const processors::walk::PacketSample sample(chosen, windows.packets().size(),
+                                              processors::walk::PacketSample::all_before);
+  const processors::replay::MachineResult result =
+      processors::replay::replay(log, machine, {.sample = &sample});
   SampledMachine sampled;
   Estimate& estimate = sampled.estimate;
   const WindowTotals totals = totals_of_windows(windows, machine, result.packet_figures, work);
@@ -209,15 +215,17 @@ SampledRun add_one_node(const SampledMachine& machine, const SampledMachine& one
   return run;
 }
 
-SampledRun estimate_by_sample(const processors::WorkLog& log, const processors::MachineConfig& machine,
-                              const PacketWindows& windows, const PixelLattice& lattice) {
+SampledRun estimate_by_sample(const processors::program::WorkLog& log,
+                              const processors::machine::MachineConfig& machine, const PacketWindows& windows,
+                              const PixelLattice& lattice) {
   check_sample(machine);
   const LatticeWork work(log, machine, lattice, windows.packets());
   const SampledMachine sampled = sample_machine(log, machine, windows, work);
   return machine.all_nodes() == 1
              ? add_one_node(sampled, sampled, windows, work)
-             : add_one_node(sampled, sample_machine(log, processors::one_node_of(machine), windows, work),
+             : add_one_node(sampled,
+                            sample_machine(log, processors::machine::one_node_of(machine), windows, work),
                             windows, work);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -10,22 +10,22 @@
 #include "studies/estimate/regression_estimate.h"
 #include "studies/estimate/simulator_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// Packets of a window, for a machine of so many nodes: one for each node, and enough for a window's work to
 /// be more than chance.
 [[nodiscard]] std::uint64_t window_length(std::uint32_t nodes);
 
 /// Throws UserError with the reason when a machine cannot be estimated from a sample.
-void check_sample(const processors::MachineConfig& machine);
+void check_sample(const processors::machine::MachineConfig& machine);
 
 /// What the pixels of the lattice say of a frame on machines whose nodes and caches are those of one, however
 /// many nodes they have.
 class LatticeWork {
  public:
   /// `log` must hold the pixels of the lattice; its others are not looked at.
-  LatticeWork(const processors::WorkLog& log, const processors::MachineConfig& machine,
-              const PixelLattice& lattice, const processors::PacketList& packets);
+  LatticeWork(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
+              const PixelLattice& lattice, const processors::machine::PacketList& packets);
 
   [[nodiscard]] const std::vector<KnownWork>& of_packets() const { return of_packets_; }
   [[nodiscard]] const KnownWork& all() const { return all_; }
@@ -58,8 +58,8 @@ struct SampledMachine {
 /// that of a host that hands out packets of the estimated times, or the time that the interconnect needs for
 /// all transfers, if that is longer. If all windows are drawn and the log is whole, the result is exact.
 /// check_sample() must not refuse the machine.
-[[nodiscard]] SampledMachine sample_machine(const processors::WorkLog& log,
-                                            const processors::MachineConfig& machine,
+[[nodiscard]] SampledMachine sample_machine(const processors::program::WorkLog& log,
+                                            const processors::machine::MachineConfig& machine,
                                             const PacketWindows& windows, const LatticeWork& work);
 
 /// A machine, and the same machine with one node.
@@ -77,8 +77,8 @@ struct SampledRun {
                                       const PacketWindows& windows, const LatticeWork& work);
 
 /// All of the above. Throws UserError for a machine that check_sample() refuses.
-[[nodiscard]] SampledRun estimate_by_sample(const processors::WorkLog& log,
-                                            const processors::MachineConfig& machine,
+[[nodiscard]] SampledRun estimate_by_sample(const processors::program::WorkLog& log,
+                                            const processors::machine::MachineConfig& machine,
                                             const PacketWindows& windows, const PixelLattice& lattice);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -18,7 +18,7 @@
 #include "studies/keys/record_keys.h"
 #include "studies/run/prepared_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -56,9 +56,9 @@ void widen(Estimate& estimate, const MachineFigures& allowance, std::uint32_t no
   }
 }
 
-std::string exact_output(const RunResult& result, const std::string& reason, bool json) {
-  return json ? json_of(result)
-              : summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
+std::string exact_output(const run::RunResult& result, const std::string& reason, bool json) {
+  return json ? run::json_of(result)
+              : run::summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
 // The share of all windows whose half-width will be `wanted`, where the windows drawn have `half_width` with
@@ -78,14 +78,15 @@ double share_for(const PacketWindows& windows, std::uint64_t degrees, double lat
 }
 
 // The answer of a sample whose frame time is known well enough.
-EstimatedRun with_one_node(const SampledMachine& sampled, const processors::WorkLog& log,
-                           const processors::MachineConfig& machine, const PacketWindows& windows,
+EstimatedRun with_one_node(const SampledMachine& sampled, const processors::program::WorkLog& log,
+                           const processors::machine::MachineConfig& machine, const PacketWindows& windows,
                            const LatticeWork& work) {
   EstimatedRun run;
   run.sampled =
       machine.all_nodes() == 1
           ? add_one_node(sampled, sampled, windows, work)
-          : add_one_node(sampled, sample_machine(log, processors::one_node_of(machine), windows, work),
+          : add_one_node(sampled,
+                         sample_machine(log, processors::machine::one_node_of(machine), windows, work),
                          windows, work);
   run.windows = windows.strata().size() * 2;
   run.of_windows = windows.windows();
@@ -116,17 +117,17 @@ double parse_tolerance(std::string_view text) {
   return value;
 }
 
-std::optional<std::string> not_sampled(const FrameConfig& frame) {
+std::optional<std::string> not_sampled(const keys::FrameConfig& frame) {
   if (frame.render.voxel_cut > 0.0) {
     return "a frame with the voxel cut is not sampled (image.voxel_cut)";
   }
-  if (frame.render.integrator == processors::Integrator::path) {
+  if (frame.render.integrator == processors::program::Integrator::path) {
     return "the errors of samples of path-traced frames have not been measured (image.integrator)";
   }
   return std::nullopt;
 }
 
-std::optional<std::string> not_sampled(const processors::MachineConfig& machine) {
+std::optional<std::string> not_sampled(const processors::machine::MachineConfig& machine) {
   try {
     check_sample(machine);
   } catch (const sim::KeyError& error) {
@@ -135,8 +136,9 @@ std::optional<std::string> not_sampled(const processors::MachineConfig& machine)
   return std::nullopt;
 }
 
-WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
-                             const processors::MachineConfig& machine, double tolerance, std::uint64_t seed) {
+WithinAnswer estimate_within(SampledFrame& frame, const processors::machine::PacketList& packets,
+                             const processors::machine::MachineConfig& machine, double tolerance,
+                             std::uint64_t seed) {
   const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
   const auto not_known = [&](double allowance) {
     return fmt::format(
@@ -166,7 +168,7 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
                           100.0 * (windows.has_all() ? 1.0 : share), strata == begun ? "first" : "again")};
     }
     most = most_share;
-    const processors::WorkLog& log = frame.with(windows);
+    const processors::program::WorkLog& log = frame.with(windows);
     if (!work) {
       work.emplace(log, machine, frame.lattice(), packets);
     }
@@ -215,12 +217,12 @@ WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& 
   }
 }
 
-std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact) {
-  FrameConfig frame = read_frame(config);
+std::string run_within(sim::Config& config, double tolerance, bool json, run::RunOptions exact) {
+  keys::FrameConfig frame = keys::read_frame(config);
   frame.meter = exact.meter;
-  refuse_several_frames(config, frame.frames);
-  const processors::MachineConfig machine = read_machine(config);
-  const RecordConfig record = read_record(config, true);
+  run::refuse_several_frames(config, frame.frames);
+  const processors::machine::MachineConfig machine = keys::read_machine(config);
+  const keys::RecordConfig record = keys::read_record(config, true);
   if (record.heat_maps || record.timeline || record.critical_path) {
     config.fail(record.timeline    ? "record.timeline"
                 : record.heat_maps ? "record.heat_maps"
@@ -228,7 +230,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
                 "an estimate does nothing that could be recorded; leave --within out");
   }
   config.refuse_unused();
-  refuse_beyond_memory(config, frame, machine);
+  run::refuse_beyond_memory(config, frame, machine);
   std::optional<std::string> reason = not_sampled(frame);
   if (!reason) {
     reason = not_sampled(machine);
@@ -237,18 +239,18 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
     reason = "nothing else is within 0 %";
   }
   if (reason) {
-    return exact_output(run(config, std::move(exact)), *reason, json);
+    return exact_output(run::run(config, std::move(exact)), *reason, json);
   }
   return sim::with_places(config, [&] {
-    const PreparedFrame prepared(frame);
+    const run::PreparedFrame prepared(frame);
     SampledFrame sampled = sampled_frame(prepared);
-    const processors::PacketList packets(frame.render.width, frame.render.height, machine.packets);
+    const processors::machine::PacketList packets(frame.render.width, frame.render.height, machine.packets);
     const WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance);
     if (!answer.estimate) {
       exact.functional = prepared.finish(std::move(sampled).whole());
-      return exact_output(run(config, std::move(exact)), answer.reason, json);
+      return exact_output(run::run(config, std::move(exact)), answer.reason, json);
     }
-    RunResult result;
+    run::RunResult result;
     result.config_name = config.name();
     result.values = config.effective_values();
     result.frame_config = frame;
@@ -260,4 +262,4 @@ std::string run_within(sim::Config& config, double tolerance, bool json, RunOpti
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

@@ -14,15 +14,15 @@
 #include "studies/keys/frame_keys.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 /// "2%", "2 %" or "0.02". Throws UserError unless it is from 0 to 100 %.
 [[nodiscard]] double parse_tolerance(std::string_view text);
 
 /// The reason why a frame is not sampled; std::nullopt when it may be.
-[[nodiscard]] std::optional<std::string> not_sampled(const FrameConfig& frame);
+[[nodiscard]] std::optional<std::string> not_sampled(const keys::FrameConfig& frame);
 /// The reason why a machine's frame is not sampled; std::nullopt when it may be.
-[[nodiscard]] std::optional<std::string> not_sampled(const processors::MachineConfig& machine);
+[[nodiscard]] std::optional<std::string> not_sampled(const processors::machine::MachineConfig& machine);
 
 /// An estimate that is good enough.
 struct EstimatedRun {
@@ -44,13 +44,14 @@ struct WithinAnswer {
 /// and speed-up are at most `tolerance`. Gives up as soon as an exact run is expected to be cheaper: what was
 /// traced till then is not lost. `seed` is that of the windows drawn. Both not_sampled() must be
 /// std::nullopt.
-[[nodiscard]] WithinAnswer estimate_within(SampledFrame& frame, const processors::PacketList& packets,
-                                           const processors::MachineConfig& machine, double tolerance,
-                                           std::uint64_t seed = 1);
+[[nodiscard]] WithinAnswer estimate_within(SampledFrame& frame,
+                                           const processors::machine::PacketList& packets,
+                                           const processors::machine::MachineConfig& machine,
+                                           double tolerance, std::uint64_t seed = 1);
 
 /// Runs a configuration and gives what to print: an estimate with error bars, or the summary of an exact run
 /// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. `exact`: how an
 /// exact run is made. Throws UserError as run() does.
-[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json, RunOptions exact);
+[[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json, run::RunOptions exact);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

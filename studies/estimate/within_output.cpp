@@ -14,7 +14,7 @@
 #include "studies/tables/text_units.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::estimate {
 
 namespace {
 
@@ -47,7 +47,7 @@ std::string bar(const Estimate& estimate, Figure figure, const Text& text, const
 
 std::string time_bar(const Estimate& estimate, Figure figure) {
   return bar(
-      estimate, figure, [](double ticks) { return seconds(std::llround(ticks)); }, "any time");
+      estimate, figure, [](double ticks) { return tables::seconds(std::llround(ticks)); }, "any time");
 }
 
 std::string number_bar(const Estimate& estimate, Figure figure, int digits) {
@@ -81,25 +81,25 @@ Json figures_json(const Estimate& estimate, bool with_speed_up) {
 
 }  // namespace
 
-std::string estimate_text(const RunResult& result, const EstimatedRun& run, const TracedPart& traced,
+std::string estimate_text(const run::RunResult& result, const EstimatedRun& run, const TracedPart& traced,
                           double tolerance) {
   const Estimate& machine = run.sampled.machine;
   const MachineFigures& value = machine.value;
   const MachineFigures& half = machine.half_width;
   const double share = machine.references > 0.0 ? 100.0 * value[Figure::misses] / machine.references : 0.0;
   const std::uint32_t nodes = result.machine.nodes;
-  const processors::LogTotals& part = result.functional.totals;
-  std::string text = scene_summary_of(result);
+  const processors::program::LogTotals& part = result.functional.totals;
+  std::string text = run::scene_summary_of(result);
   text += fmt::format("image         {} x {}, about {} rays\n", result.frame_config.render.width,
                       result.frame_config.render.height,
-                      grouped(static_cast<std::uint64_t>(std::llround(traced.rays))));
+                      tables::grouped(static_cast<std::uint64_t>(std::llround(traced.rays))));
   text += fmt::format(
       "left out      {:.1f} % of the pixels, with about {:.1f} % of the rays and {} of work log: {} windows "
       "of {} are traced and timed, {} of {} packets, and of all others one pixel in 64\n",
       100.0 * (1.0 - traced.pixels),
       100.0 * std::max(0.0, 1.0 - static_cast<double>(part.all_rays()) / traced.rays),
-      bytes(std::max(0.0, traced.log_bytes - static_cast<double>(part.bytes))), run.windows, run.of_windows,
-      grouped(run.packets), grouped(run.of_packets));
+      tables::bytes(std::max(0.0, traced.log_bytes - static_cast<double>(part.bytes))), run.windows,
+      run.of_windows, tables::grouped(run.packets), tables::grouped(run.of_packets));
   text += fmt::format(
       "\nestimate      not exact, asked for within {:g} %: 95 % intervals, by the spread of this sample and "
       "errors that `marti study error` measured on machines whose interconnect is busy up to {:g} % of the "
@@ -107,7 +107,7 @@ std::string estimate_text(const RunResult& result, const EstimatedRun& run, cons
       100.0 * tolerance, 100.0 * run.use_to);
   text += "frame time    " + time_bar(machine, Figure::end);
   text += fmt::format("speed-up      {}", number_bar(machine, Figure::speed_up, 2));
-  text += fmt::format("  on {}\n", counted(nodes, "node"));
+  text += fmt::format("  on {}\n", tables::counted(nodes, "node"));
   text += "one node      " + time_bar(run.sampled.one_node, Figure::end);
   text += "misses        " + number_bar(machine, Figure::misses, 0);
   text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
@@ -117,10 +117,10 @@ std::string estimate_text(const RunResult& result, const EstimatedRun& run, cons
   return text;
 }
 
-std::string estimate_json(const RunResult& result, const EstimatedRun& run, const TracedPart& traced,
+std::string estimate_json(const run::RunResult& result, const EstimatedRun& run, const TracedPart& traced,
                           double tolerance) {
   const Json json = {{"marti", {{"version", version}}},
-                     {"config", config_json(result.config_name, result.values)},
+                     {"config", keys::config_json(result.config_name, result.values)},
                      {"estimate",
                       {{"tolerance", tolerance},
                        {"use_to", run.use_to},
@@ -134,7 +134,7 @@ std::string estimate_json(const RunResult& result, const EstimatedRun& run, cons
                        {"references", run.sampled.machine.references},
                        {"machine", figures_json(run.sampled.machine, true)},
                        {"one_node", figures_json(run.sampled.one_node, false)}}}};
-  return json_text(json);
+  return tables::json_text(json);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::estimate

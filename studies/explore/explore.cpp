@@ -12,7 +12,7 @@
 #include "studies/explore/session.h"
 #include "studies/progress/shown_meter.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
@@ -42,7 +42,7 @@ void explore_command(const ExploreArguments& arguments, void (*print)(const std:
   const std::unique_ptr<HttpServer> server = make_http_server();
   const int port = server->bind(arguments.port);  // before the frame is traced, which may take long
   sim::WorkMeter meter;
-  std::optional<ShownMeter> shown(std::in_place, meter);
+  std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const Session session(arguments.config, arguments.assignments, &meter);
   shown.reset();  // before anything is printed
   ExploreService service(session, random_token(), port);
@@ -54,4 +54,4 @@ void explore_command(const ExploreArguments& arguments, void (*print)(const std:
   service.wait_for_end(arguments.seconds);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

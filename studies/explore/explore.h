@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 struct ExploreArguments {
   std::string config;
@@ -18,4 +18,4 @@ struct ExploreArguments {
 /// UserError for a wrong configuration.
 void explore_command(const ExploreArguments& arguments, void (*print)(const std::string&));
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

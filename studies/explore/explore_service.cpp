@@ -14,7 +14,7 @@
 #include "studies/explore/page_files.h"
 #include "studies/report/page/page_files.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
@@ -111,7 +111,7 @@ std::optional<HttpResponse> ExploreService::file(const std::string& name) const 
     return made(html_type, explore_page_html());
   }
   if (name == "report.css") {
-    return made("text/css; charset=utf-8", report_page_css().text);
+    return made("text/css; charset=utf-8", report::report_page_css().text);
   }
   if (name == "explore.css") {
     return made("text/css; charset=utf-8", explore_page_css());
@@ -159,12 +159,12 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
   try {
     if (name == "time") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return json_response(session_.answer(settings, Measuring::none, meter));
+        return json_response(session_.answer(settings, helps::Measuring::none, meter));
       });
     }
     if (name == "helps") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return json_response(session_.answer(settings, Measuring::within_budget, meter));
+        return json_response(session_.answer(settings, helps::Measuring::within_budget, meter));
       });
     }
     if (name == "model") {  // beside the simulation whose answer it stands for
@@ -212,4 +212,4 @@ void ExploreService::wait_for_end(double seconds) {
   turns_.stop();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

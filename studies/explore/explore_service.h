@@ -11,7 +11,7 @@
 #include "studies/explore/session.h"
 #include "studies/explore/turns.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// The most bytes of a request's body.
 inline constexpr std::size_t most_body_bytes = 64 * 1024;
@@ -52,4 +52,4 @@ class ExploreService : public HttpService {
   bool end_ = false;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -6,7 +6,7 @@
 
 #include "studies/figures/derived_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
@@ -24,7 +24,7 @@ std::string name_of(Settings settings) {
 
 }  // namespace
 
-void ExploredMachines::add(const Settings& settings, const RunResult& result) {
+void ExploredMachines::add(const Settings& settings, const run::RunResult& result) {
   Machine machine{name_of(settings), {}};
   for (const std::string_view figure : shown_figures) {
     machine.figures.push_back(result.figure(figure));
@@ -37,18 +37,19 @@ void ExploredMachines::add(const Settings& settings, const RunResult& result) {
   }
 }
 
-Table ExploredMachines::table() const {
-  std::vector<Column> columns = {{"settings", ColumnType::text, "", "what differs from the configuration"}};
+tables::Table ExploredMachines::table() const {
+  std::vector<tables::Column> columns = {
+      {"settings", tables::ColumnType::text, "", "what differs from the configuration"}};
   for (const std::string_view name : shown_figures) {
-    const FigureEntry& figure = figure_named(name);
-    columns.push_back({figure.name, ColumnType::real, figure.unit, figure.description});
+    const figures::FigureEntry& figure = figures::figure_named(name);
+    columns.push_back({figure.name, tables::ColumnType::real, figure.unit, figure.description});
   }
-  Table table("explored", "All machines that were simulated", std::move(columns));
+  tables::Table table("explored", "All machines that were simulated", std::move(columns));
   const std::lock_guard lock(mutex_);
   for (const Machine& machine : machines_) {
-    std::vector<Cell> row = {machine.name};
+    std::vector<tables::Cell> row = {machine.name};
     for (const std::optional<double>& value : machine.figures) {
-      Cell& cell = row.emplace_back();
+      tables::Cell& cell = row.emplace_back();
       if (value) {
         cell = *value;
       }
@@ -58,4 +59,4 @@ Table ExploredMachines::table() const {
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -10,7 +10,7 @@
 #include "studies/run/run_result.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// Keys and their values, each as --set has them.
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -19,10 +19,10 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 class ExploredMachines {
  public:
   /// Keeps the machine's figures, unless it is there already or there are too many.
-  void add(const Settings& settings, const RunResult& result);
+  void add(const Settings& settings, const run::RunResult& result);
 
   /// "explored": a row for each machine, in the order in which they were simulated first.
-  [[nodiscard]] Table table() const;
+  [[nodiscard]] tables::Table table() const;
 
  private:
   struct Machine {
@@ -35,4 +35,4 @@ class ExploredMachines {
   std::vector<Machine> machines_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

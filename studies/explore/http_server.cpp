@@ -13,7 +13,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
@@ -249,6 +249,6 @@ class Httplib : public HttpServer {
 
 }  // namespace
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore
 
-marti::studies::HttpServer* marti_http_server() { return new marti::studies::Httplib(); }
+marti::studies::explore::HttpServer* marti_http_server() { return new marti::studies::explore::Httplib(); }

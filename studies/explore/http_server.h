@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// A request without its body. Of a header that came several times all values are here.
 struct HttpHead {
@@ -62,7 +62,7 @@ class HttpServer {
 /// Loads the library. Throws UserError when that fails.
 [[nodiscard]] std::unique_ptr<HttpServer> make_http_server();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore
 
 /// The one function that marti_http_server.so exports. The caller owns the server.
-extern "C" marti::studies::HttpServer* marti_http_server();
+extern "C" marti::studies::explore::HttpServer* marti_http_server();

@@ -5,7 +5,7 @@
 #include "sim/error.h"
 #include "studies/explore/http_server.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 std::unique_ptr<HttpServer> make_http_server() {
   // Found as marti_image_codec.so is (studies/host/image_file.cpp). It stays loaded.
@@ -19,4 +19,4 @@ std::unique_ptr<HttpServer> make_http_server() {
   return std::unique_ptr<HttpServer>(reinterpret_cast<decltype(&marti_http_server)>(function)());
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -13,13 +13,13 @@
 #include "studies/estimate/packet_schedule.h"
 #include "studies/estimate/within.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::PacketList;
-using processors::WorkLog;
+using processors::machine::MachineConfig;
+using processors::machine::PacketList;
+using processors::program::WorkLog;
 
 constexpr std::uint64_t most_timed = 96;  // packets
 // Packets that a node takes through its cache before each, without time: enough for the small caches of the
@@ -29,7 +29,7 @@ constexpr std::uint64_t warm_up = 1;
 std::vector<double> words_of(const WorkLog& log, const PacketList& packets) {
   std::vector<double> words(packets.size());
   for (std::uint64_t i = 0; i < packets.size(); ++i) {
-    const processors::Packet packet = packets[i];
+    const processors::machine::Packet packet = packets[i];
     for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
       for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
         words[i] += static_cast<double>(log.pixel(x, y).size());
@@ -61,27 +61,27 @@ double handed_out(const MachineConfig& machine, const std::vector<double>& words
   }
   // More nodes than packets would have nothing to do.
   const auto nodes = static_cast<std::uint32_t>(std::min<std::size_t>(machine.nodes, words.size()));
-  return static_cast<double>(schedule_packets(machine.host, nodes, times));
+  return static_cast<double>(estimate::schedule_packets(machine.host, nodes, times));
 }
 
 }  // namespace
 
 std::optional<ModelledFrame> modelled_frame(const WorkLog& log, const MachineConfig& machine,
                                             sim::WorkMeter* meter) {
-  const MachineConfig one = processors::one_node_of(machine);
-  if (not_sampled(machine)) {
+  const MachineConfig one = processors::machine::one_node_of(machine);
+  if (estimate::not_sampled(machine)) {
     return std::nullopt;
   }
   const PacketList packets(log.width, log.height, machine.packets);
   const std::vector<double> words = words_of(log, packets);
   const std::vector<std::uint64_t> chosen = spread(packets.size());
-  const processors::PacketSample sample(chosen, packets.size(), warm_up);
-  processors::ReplayOptions options;
+  const processors::walk::PacketSample sample(chosen, packets.size(), warm_up);
+  processors::replay::ReplayOptions options;
   options.sample = &sample;
   options.meter = meter;
   MachineConfig plain = one;
   plain.energy = {};
-  const processors::MachineResult timed = processors::replay(log, plain, options);
+  const processors::replay::MachineResult timed = processors::replay::replay(log, plain, options);
   double timed_words = 0.0;
   for (const std::uint64_t packet : chosen) {
     timed_words += words[packet];
@@ -102,14 +102,14 @@ std::optional<ModelledFrame> modelled_frame(const WorkLog& log, const MachineCon
   const double at_work = std::min<double>(machine.nodes, static_cast<double>(packets.size()));
   const double alone = handed_out(machine, words, frame.end_of_one);
   frame.end = alone;
-  if (std::optional<processors::Prediction> queues = processors::predict(plain, timed)) {
+  if (std::optional<processors::replay::Prediction> queues = processors::replay::predict(plain, timed)) {
     // The same reads, thinking and service as with one node, but with all nodes.
     queues->network.customers = static_cast<std::uint64_t>(at_work);
-    const double even =
-        times * static_cast<double>(queues->reads) / processors::mean_values(queues->network).throughput;
+    const double even = times * static_cast<double>(queues->reads) /
+                        processors::theory::mean_values(queues->network).throughput;
     frame.end = even + std::max(0.0, alone - frame.end_of_one / at_work);  // and the last packets
   }
   return frame;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

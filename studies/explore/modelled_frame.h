@@ -8,7 +8,7 @@
 #include "processors/program/work_log.h"
 #include "sim/work_meter.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 struct ModelledFrame {
   double end = 0.0;           ///< ps
@@ -21,8 +21,8 @@ struct ModelledFrame {
 /// the words that the log has of each, what nodes wait for each other from mean value analysis of the queues
 /// that one node meets (processors/theory), and how unevenly they end from handing all packets out.
 /// std::nullopt for a machine whose packets cannot be sampled. `meter` may stop it.
-[[nodiscard]] std::optional<ModelledFrame> modelled_frame(const processors::WorkLog& log,
-                                                          const processors::MachineConfig& machine,
+[[nodiscard]] std::optional<ModelledFrame> modelled_frame(const processors::program::WorkLog& log,
+                                                          const processors::machine::MachineConfig& machine,
                                                           sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

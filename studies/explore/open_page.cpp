@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <thread>
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 bool has_screen() {
   return isatty(STDOUT_FILENO) == 1 &&
@@ -42,4 +42,4 @@ void open_page(const std::string& address) {
   posix_spawn_file_actions_destroy(&files);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// Whether somebody sits before this computer who would see a browser: the program writes to a terminal, and
 /// a screen is known.
@@ -12,4 +12,4 @@ namespace marti::studies {
 /// Has the desktop open the address. What goes wrong is not told: the address is printed anyway.
 void open_page(const std::string& address);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 [[nodiscard]] std::string_view explore_page_html();
 [[nodiscard]] std::string_view explore_page_css();
@@ -33,4 +33,4 @@ namespace marti::studies {
            {"main.js", explore_main_js()}}};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

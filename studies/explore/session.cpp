@@ -25,7 +25,7 @@
 #include "studies/report/read/read_report.h"
 #include "studies/show/key_list.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 namespace {
 
@@ -41,7 +41,7 @@ std::string value_anywhere(const sim::Config& config, const sim::Key& key, std::
   if (key.name == "scene.source") {
     const auto& source = std::get<std::string>(config.values_at(index).front());
     if (scenes::names_a_file(source)) {
-      const std::filesystem::path file = std::filesystem::absolute(directory_of_scene(config) / source);
+      const std::filesystem::path file = std::filesystem::absolute(keys::directory_of_scene(config) / source);
       return sim::print_value(key.type, file.lexically_normal().string());
     }
   }
@@ -56,11 +56,11 @@ Json key_json(const sim::Config& config, std::size_t index) {
           {"list", key.is_list},
           {"choices", key.choices},
           {"range", print_range(key)},
-          {"minimum", json_of_bound(key.minimum)},
-          {"maximum", json_of_bound(key.maximum)},
+          {"minimum", show::json_of_bound(key.minimum)},
+          {"maximum", show::json_of_bound(key.maximum)},
           {"unit", key.unit},
           {"meaning", key.meaning},
-          {"value", setting_value(key.name, sim::print_values(key, config.values_at(index)))}};
+          {"value", keys::setting_value(key.name, sim::print_values(key, config.values_at(index)))}};
 }
 
 std::string keys_json(const sim::Config& config) {
@@ -80,8 +80,8 @@ std::string keys_json(const sim::Config& config) {
     sections[section.name] = section.meaning;
   }
   Json units = Json::object();
-  for (const auto& figures : {counted_figures(), derived_figures()}) {
-    for (const FigureEntry& figure : figures) {
+  for (const auto& figures : {figures::counted_figures(), figures::derived_figures()}) {
+    for (const figures::FigureEntry& figure : figures) {
       units[figure.name] = figure.unit;
     }
   }
@@ -115,15 +115,15 @@ bool is_control(const sim::Key& key) {
 
 Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments,
                  sim::WorkMeter* meter)
-    : name_(file.string()), assignments_(std::move(assignments)), schema_(run_schema()) {
-  require_config_file(file);
-  declare_price_keys(schema_);
+    : name_(file.string()), assignments_(std::move(assignments)), schema_(run::run_schema()) {
+  keys::require_config_file(file);
+  keys::declare_price_keys(schema_);
   text_ = sim::read_file(file, sim::longest_config);
   sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments_);
-  RunOptions options;
-  options.prices = read_given_prices(config);
+  run::RunOptions options;
+  options.prices = keys::read_given_prices(config);
   options.meter = meter;
-  functional_ = run(config, std::move(options)).functional;
+  functional_ = run::run(config, std::move(options)).functional;
   keys_ = keys_json(config);
 }
 
@@ -157,27 +157,30 @@ sim::Config Session::config_with(const Settings& settings) const {
   return sim::Config::from_text(schema_, text_, name_, assignments);
 }
 
-std::string Session::timed(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
+std::string Session::timed(const Settings& settings, helps::Measuring what_helps,
+                           sim::WorkMeter* meter) const {
   sim::Config config = config_with(settings);
-  RunOptions options;
-  options.prices = read_given_prices(config);
+  run::RunOptions options;
+  options.prices = keys::read_given_prices(config);
   options.what_helps = what_helps;
   options.functional = functional_;
   options.stripped_logs = &stripped_logs_;
   options.meter = meter;
-  const RunResult result = run(config, std::move(options));
+  const run::RunResult result = run::run(config, std::move(options));
   explored_.add(settings, result);
-  return json_of(result);
+  return run::json_of(result);
 }
 
-std::string Session::answer(const Settings& settings, Measuring what_helps, sim::WorkMeter* meter) const {
+std::string Session::answer(const Settings& settings, helps::Measuring what_helps,
+                            sim::WorkMeter* meter) const {
   return refused_or([&] { return timed(settings, what_helps, meter); });
 }
 
 std::string Session::modelled(const Settings& settings) const {
   return refused_or([&] {
     sim::Config config = config_with(settings);
-    const std::optional<ModelledFrame> frame = modelled_frame(*functional_.frame.log, read_machine(config));
+    const std::optional<ModelledFrame> frame =
+        modelled_frame(*functional_.frame.log, keys::read_machine(config));
     return frame ? Json({{"end", frame->end},
                          {"end_of_one", frame->end_of_one},
                          {"packets", frame->packets},
@@ -191,18 +194,18 @@ std::optional<std::string> Session::report(const Settings& settings, std::string
                                            sim::WorkMeter* meter) const {
   bool made = false;
   std::string text = refused_or([&] {
-    if (!have_vega_scripts()) {
-      throw sim::UserError(no_vega_scripts);
+    if (!report::have_vega_scripts()) {
+      throw sim::UserError(report::no_vega_scripts);
     }
-    const RunJson run(Json::parse(timed(settings, Measuring::within_budget, meter)), name_);
-    ReportData report = report_of_run(run);
+    const tables::RunJson run(Json::parse(timed(settings, helps::Measuring::within_budget, meter)), name_);
+    report::ReportData report = report::report_of_run(run);
     report.title += ", explored";
-    const Table machines = explored_.table();
+    const tables::Table machines = explored_.table();
     if (machines.rows().size() > 1) {
-      report.charts.insert(report.charts.begin(), make_chart("explored", machines));
+      report.charts.insert(report.charts.begin(), report::make_chart("explored", machines));
     }
     report.tables.insert(report.tables.begin(), {machines, false});
-    std::string page = report_page(report, vega_scripts());
+    std::string page = report::report_page(report, report::vega_scripts());
     made = true;
     return page;
   });
@@ -213,4 +216,4 @@ std::optional<std::string> Session::report(const Settings& settings, std::string
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -15,7 +15,7 @@
 #include "studies/explore/explored_machines.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// Whether the key describes the machine. Keys of the frame, of the computer and of what is recorded do not:
 /// the frame is rendered only once.
@@ -36,7 +36,7 @@ class Session {
   /// The result of the machine with these settings, as `marti run --json` prints it with them behind the
   /// session's own; {"error": message, "key": name or null} when the machine is refused. `meter` is
   /// told how far it is; after its stop() this throws sim::Stopped. Several threads may call it.
-  [[nodiscard]] std::string answer(const Settings& settings, Measuring what_helps,
+  [[nodiscard]] std::string answer(const Settings& settings, helps::Measuring what_helps,
                                    sim::WorkMeter* meter = nullptr) const;
 
   /// The machine's frame time by a model, in a fraction of the time that answer() takes: {"end",
@@ -55,17 +55,17 @@ class Session {
   [[nodiscard]] std::string refused_or(const Make& make) const;
   // The configuration with these settings. Throws UserError for one that is none of the machine.
   [[nodiscard]] sim::Config config_with(const Settings& settings) const;
-  [[nodiscard]] std::string timed(const Settings& settings, Measuring what_helps,
+  [[nodiscard]] std::string timed(const Settings& settings, helps::Measuring what_helps,
                                   sim::WorkMeter* meter) const;
 
   std::string name_;
   std::string text_;  // of the file
   std::vector<std::string> assignments_;
   sim::Schema schema_;
-  FunctionalRun functional_;
-  mutable KeptStrippedLogs stripped_logs_;  // guards itself
-  mutable ExploredMachines explored_;       // guards itself
+  run::FunctionalRun functional_;
+  mutable run::KeptStrippedLogs stripped_logs_;  // guards itself
+  mutable ExploredMachines explored_;            // guards itself
   std::string keys_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -1,6 +1,6 @@
 #include "studies/explore/turns.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 Turns::Turn::~Turn() {
   if (turns_ != nullptr) {
@@ -48,4 +48,4 @@ std::optional<Turns::Turn> Turns::take(Asker asker) {
   return std::optional<Turn>(std::in_place, *this, taken_);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -10,7 +10,7 @@
 
 #include "sim/work_meter.h"
 
-namespace marti::studies {
+namespace marti::studies::explore {
 
 /// Who asks for a simulation.
 enum class Asker : std::uint8_t {
@@ -61,4 +61,4 @@ class Turns {
   std::uint64_t newest_background_ = 0;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::explore

@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better bett
   return front;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -8,7 +8,7 @@
 
 #include "studies/figures/figure_entry.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// What a choice costs and what it gives: of a machine its price and a figure. Neither is NaN.
 struct Offer {
@@ -25,4 +25,4 @@ struct Offer {
 /// ascending by cost, so that each is better than the one before. Of equal offers only the first is given.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better better);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -10,11 +10,11 @@
 #include "studies/figures/counted_parts.h"
 #include "studies/figures/machine_totals.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 namespace {
 
@@ -39,14 +39,14 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
             r.unloaded_miss);
   parts.add_count("events", {"1", "events of the simulation", Merge::one}, r.events);
   parts.add_all("host_", "host", std::optional(r.host));
-  const processors::TimeDivision time = r.time();
-  for (std::size_t i = 0; i < processors::activities; ++i) {
-    parts.add("time_", processors::activity_names[i],
+  const processors::cost::TimeDivision time = r.time();
+  for (std::size_t i = 0; i < processors::cost::activities; ++i) {
+    parts.add("time_", processors::cost::activity_names[i],
               {"ps", "time of all nodes in this activity (model.md, Accounting)"}, time[i]);
   }
   sim::Ticks without_work = 0;
-  for (const processors::NodeStatistics& node : r.nodes) {
-    if (!processors::had_work(node)) {
+  for (const processors::cost::NodeStatistics& node : r.nodes) {
+    if (!processors::replay::had_work(node)) {
       for (const Activity activity : {Activity::idle, Activity::message_wait}) {
         without_work = sim::add_ticks(without_work, node.time[static_cast<std::size_t>(activity)]);
       }
@@ -58,8 +58,8 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
 }
 
 void add_references(FigureParts& parts, const MachineResult& r) {
-  const processors::ReferenceCounts counts = r.references();
-  const auto records = processors::records_of(r.steps());
+  const processors::cost::ReferenceCounts counts = r.references();
+  const auto records = processors::cost::records_of(r.steps());
   parts.add("hits",
             {"1", "lines found in the nodes' own caches, first level; without a cache none", Merge::sum,
              Better::higher},
@@ -164,4 +164,4 @@ std::optional<std::int64_t> count_of(const Counts& counts, std::string_view figu
   return counts[place->second];
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -10,20 +10,20 @@
 #include "studies/figures/figure_parts.h"
 #include "studies/figures/machine_totals.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// In order. The first is "end", the frame time in ps.
 [[nodiscard]] std::span<const FigureEntry> counted_figures();
 
 /// One value for each of counted_figures(), whatever the machine. Throws InternalError for a sum that does
 /// not fit.
-[[nodiscard]] Counts counts_of(const processors::MachineConfig& machine,
-                               const processors::MachineResult& result);
+[[nodiscard]] Counts counts_of(const processors::machine::MachineConfig& machine,
+                               const processors::replay::MachineResult& result);
 /// `totals` must be totals_of(result).
-[[nodiscard]] Counts counts_of(const processors::MachineConfig& machine,
-                               const processors::MachineResult& result, const MachineTotals& totals);
+[[nodiscard]] Counts counts_of(const processors::machine::MachineConfig& machine,
+                               const processors::replay::MachineResult& result, const MachineTotals& totals);
 
 /// The value of the counted figure of this name. Throws InternalError when there is none.
 [[nodiscard]] std::optional<std::int64_t> count_of(const Counts& counts, std::string_view figure);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -7,16 +7,16 @@
 #include "processors/walk/attribution.h"
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,
                       const MachineTotals& totals) {
-  const processors::FlowResult& flow = r.flow;
+  const processors::flow::FlowResult& flow = r.flow;
   const bool there = totals.flow.has_value();
-  const bool space = there && machine.scheme == processors::Scheme::space;
+  const bool space = there && machine.scheme == processors::machine::Scheme::space;
   parts.add_all("flow_", "rays of all nodes", totals.flow);
   parts.add("flow_rays", {"1", "camera rays the host sent and rays made", Merge::sum, Better::neither},
             only(there, flow.rays));
@@ -52,8 +52,8 @@ void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const Ma
 }
 
 void add_build_figures(FigureParts& parts, const MachineResult& r) {
-  const processors::BuildResult& build = r.build;
-  const bool there = build.sharing != processors::Sharing::given;
+  const processors::node::BuildResult& build = r.build;
+  const bool there = build.sharing != processors::machine::Sharing::given;
   parts.add("build_start_up",
             {"ps", "when the initial trees are there and the host begins; part of end", Merge::one},
             only(there, build.start_up));
@@ -103,10 +103,10 @@ void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const M
             {"1", "of these, fetched by every node of the cluster", Merge::sum, Better::neither},
             sharing ? std::optional(sharing->by(machine.nodes)) : std::nullopt);
   const auto attributed = [&](const auto& of) {
-    std::optional<processors::AttributionCounts> sum;
+    std::optional<processors::walk::AttributionCounts> sum;
     if (r.counts.attribution) {
       sum.emplace();
-      for (const processors::AttributionRow& row : *r.counts.attribution) {
+      for (const processors::walk::AttributionRow& row : *r.counts.attribution) {
         if (of(row)) {
           sim::merge(*sum, row.counts);
         }
@@ -114,10 +114,10 @@ void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const M
     }
     return sum;
   };
-  for (std::size_t ray = 0; ray < processors::ray_kinds; ++ray) {
-    const std::string name(processors::ray_kind_names[ray]);
+  for (std::size_t ray = 0; ray < processors::program::ray_kinds; ++ray) {
+    const std::string name(processors::program::ray_kind_names[ray]);
     parts.add_all(name + "_ray_", "for " + name + " rays",
-                  attributed([ray](const processors::AttributionRow& row) {
+                  attributed([ray](const processors::walk::AttributionRow& row) {
                     return static_cast<std::size_t>(row.ray) == ray && !row.splitting;
                   }));
   }
@@ -127,12 +127,12 @@ void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const M
     parts.add_all(
         "bounce_" + std::to_string(bounce) + "_",
         "for rays after " + std::to_string(bounce) + (last ? " surface points or more" : " surface points"),
-        attributed([bounce, last](const processors::AttributionRow& row) {
+        attributed([bounce, last](const processors::walk::AttributionRow& row) {
           return !row.splitting && (row.bounce == bounce || (last && row.bounce > bounce));
         }));
   }
   parts.add_all("split_", "for splitting branches of the tree",
-                attributed([](const processors::AttributionRow& row) { return row.splitting; }));
+                attributed([](const processors::walk::AttributionRow& row) { return row.splitting; }));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -7,7 +7,7 @@
 #include "studies/figures/figure_parts.h"
 #include "studies/figures/machine_totals.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// The value of a part, if there is one.
 template <class Value>
@@ -16,15 +16,15 @@ std::optional<Value> only(bool there, Value value) {
 }
 
 /// Of rays that move from node to node.
-void add_flow_figures(FigureParts& parts, const processors::MachineConfig& machine,
-                      const processors::MachineResult& result, const MachineTotals& totals);
+void add_flow_figures(FigureParts& parts, const processors::machine::MachineConfig& machine,
+                      const processors::replay::MachineResult& result, const MachineTotals& totals);
 /// Of a tree that is built.
-void add_build_figures(FigureParts& parts, const processors::MachineResult& result);
+void add_build_figures(FigureParts& parts, const processors::replay::MachineResult& result);
 /// Of the second level, of contexts and prefetching.
-void add_cache_figures(FigureParts& parts, const processors::MachineResult& result,
+void add_cache_figures(FigureParts& parts, const processors::replay::MachineResult& result,
                        const MachineTotals& totals);
 /// What is counted only when it is asked for.
-void add_asked_figures(FigureParts& parts, const processors::MachineConfig& machine,
-                       const processors::MachineResult& result);
+void add_asked_figures(FigureParts& parts, const processors::machine::MachineConfig& machine,
+                       const processors::replay::MachineResult& result);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

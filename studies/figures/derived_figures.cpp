@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "sim/nearest.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 namespace {
 
@@ -16,8 +16,8 @@ Formula own(std::string_view name) { return Formula(name); }
 Formula base(std::string_view name) { return Formula(name, Whose::base); }
 
 // Which part of the lost speed-up an activity belongs to: its place in loss_names.
-std::size_t loss_of(processors::Activity activity) {
-  using processors::Activity;
+std::size_t loss_of(processors::cost::Activity activity) {
+  using processors::cost::Activity;
   switch (activity) {
     case Activity::traversal:
     case Activity::intersection:
@@ -48,9 +48,9 @@ std::size_t loss_of(processors::Activity activity) {
 Formula lost(std::size_t loss) {
   const Formula idle_nodes = own("time_without_work") - base("time_without_work");
   std::optional<Formula> sum;
-  for (std::size_t i = 0; i < processors::activities; ++i) {
-    if (loss_of(static_cast<processors::Activity>(i)) == loss) {
-      const std::string time = "time_" + std::string(processors::activity_names[i]);
+  for (std::size_t i = 0; i < processors::cost::activities; ++i) {
+    if (loss_of(static_cast<processors::cost::Activity>(i)) == loss) {
+      const std::string time = "time_" + std::string(processors::cost::activity_names[i]);
       const Formula more = own(time) - base(time);
       sum = sum ? *sum + more : more;
     }
@@ -140,7 +140,7 @@ void add_memory(std::vector<FigureEntry>& all) {
       own("flow_memory") / own("nodes"));
   add("finish_balance", "fraction", "mean finish of the nodes by the latest", Better::higher,
       own("node_finish") / (own("nodes") * own("latest_finish")));
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     add("share_" + std::string(activity), "fraction",
         "share of the nodes' time in this activity (model.md, Accounting)", Better::lower,
         own("time_" + std::string(activity)) / (own("nodes") * end));
@@ -205,8 +205,8 @@ std::optional<double> figure_of(const MeasuredCounts& counts, std::string_view n
   return at->second->formula ? at->second->formula->value(count) : count(name, Whose::own);
 }
 
-std::optional<double> figure_of(const processors::MachineConfig& machine,
-                                const processors::MachineResult& result, std::string_view name) {
+std::optional<double> figure_of(const processors::machine::MachineConfig& machine,
+                                const processors::replay::MachineResult& result, std::string_view name) {
   const Counts counts = counts_of(machine, result);
   return figure_of({&counts}, name);
 }
@@ -224,4 +224,4 @@ const FigureEntry& figure_named(std::string_view name) {
   return *at->second;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

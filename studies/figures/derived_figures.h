@@ -9,7 +9,7 @@
 
 #include "studies/figures/counted_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 [[nodiscard]] std::span<const FigureEntry> derived_figures();
 
@@ -39,11 +39,12 @@ void for_each_derived(const MeasuredCounts& counts, Visit&& visit) {
   }
 }
 /// Of a figure that is not measured against another machine.
-[[nodiscard]] std::optional<double> figure_of(const processors::MachineConfig& machine,
-                                              const processors::MachineResult& result, std::string_view name);
+[[nodiscard]] std::optional<double> figure_of(const processors::machine::MachineConfig& machine,
+                                              const processors::replay::MachineResult& result,
+                                              std::string_view name);
 
 /// The entry of a counted or derived figure. Throws UserError for an unknown name, with the nearest known
 /// one.
 [[nodiscard]] const FigureEntry& figure_named(std::string_view name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

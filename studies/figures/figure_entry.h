@@ -10,7 +10,7 @@
 #include "sim/statistics.h"
 #include "studies/figures/formula.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// How the figures of nodes, clusters, banks and levels make the machine's.
 enum class Merge : std::uint8_t {
@@ -36,4 +36,4 @@ struct FigureEntry {
   std::optional<Formula> formula{};  ///< std::nullopt: it is counted, an integer
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

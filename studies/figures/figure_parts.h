@@ -12,7 +12,7 @@
 #include "sim/error.h"
 #include "studies/figures/figure_entry.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// The values of counted figures, one for each entry; std::nullopt where a machine has no such part.
 using Counts = std::vector<std::optional<std::int64_t>>;
@@ -75,4 +75,4 @@ class FigureParts {
   Counts values_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

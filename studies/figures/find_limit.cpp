@@ -7,9 +7,9 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/figures/flow_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
-using processors::Activity;
+using processors::cost::Activity;
 
 namespace {
 
@@ -18,8 +18,8 @@ constexpr double notable_share = 0.1;
 
 }  // namespace
 
-std::string interconnect_name(const processors::MachineConfig& machine) {
-  if (machine.placement == processors::Placement::distributed) {
+std::string interconnect_name(const processors::machine::MachineConfig& machine) {
+  if (machine.placement == processors::machine::Placement::distributed) {
     const auto kind = static_cast<std::size_t>(machine.network.kind);
     return std::string(memory::network_kind_names[kind]) + " network";
   }
@@ -34,11 +34,12 @@ std::string interconnect_name(const processors::MachineConfig& machine) {
   return "bus";
 }
 
-Limit find_limit(const processors::MachineConfig& machine, const processors::MachineResult& result) {
+Limit find_limit(const processors::machine::MachineConfig& machine,
+                 const processors::replay::MachineResult& result) {
   if (result.end == 0) {
     return Limit::nothing;  // the frame takes no time
   }
-  const processors::TimeDivision time = result.time();
+  const processors::cost::TimeDivision time = result.time();
   const auto part = [&](std::initializer_list<Activity> parts) {
     return std::accumulate(parts.begin(), parts.end(), 0.0, [&](double sum, Activity activity) {
       return sum + static_cast<double>(time[static_cast<std::size_t>(activity)]);
@@ -54,7 +55,7 @@ Limit find_limit(const processors::MachineConfig& machine, const processors::Mac
       {Limit::lock, part({Activity::lock_wait})},
       {Limit::imbalance, part({Activity::idle})},
       {Limit::write_buffer,
-       machine.scheme == processors::Scheme::image ? part({Activity::queue_full_wait}) : 0.0},
+       machine.scheme == processors::machine::Scheme::image ? part({Activity::queue_full_wait}) : 0.0},
       {Limit::slowest_part, waits.slowest},
       {Limit::queues, waits.queues},
       {Limit::messages, waits.messages},
@@ -66,7 +67,7 @@ Limit find_limit(const processors::MachineConfig& machine, const processors::Mac
       candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
   const double flow = waits.slowest + waits.queues + waits.messages;
-  if (machine.scheme != processors::Scheme::image && flow >= notable_share * all) {
+  if (machine.scheme != processors::machine::Scheme::image && flow >= notable_share * all) {
     // A resource that is always busy bounds the frame even if the nodes spend more time on something else.
     // First come shared resources, then the slowest part, whose nodes may be busy waiting for a shared
     // resource.
@@ -116,4 +117,4 @@ std::string_view name_of(Limit limit) {
   return "compute";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

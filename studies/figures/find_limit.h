@@ -6,11 +6,11 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// What connects the nodes to their memory: "ideal interconnect", "bus", "crossbar", or for a distributed
 /// database "mesh network" and the like.
-[[nodiscard]] std::string interconnect_name(const processors::MachineConfig& machine);
+[[nodiscard]] std::string interconnect_name(const processors::machine::MachineConfig& machine);
 
 enum class Limit {
   nothing,
@@ -29,10 +29,10 @@ enum class Limit {
 };
 
 /// Where most of the nodes' time goes. It does not say what would help: studies/helps measures that.
-[[nodiscard]] Limit find_limit(const processors::MachineConfig& machine,
-                               const processors::MachineResult& result);
+[[nodiscard]] Limit find_limit(const processors::machine::MachineConfig& machine,
+                               const processors::replay::MachineResult& result);
 
 /// The name of a limit in results for programs.
 [[nodiscard]] std::string_view name_of(Limit limit);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -6,12 +6,12 @@
 #include "processors/flow/pipeline/stages.h"
 #include "studies/figures/derived_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
-using processors::Scheme;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::machine::Scheme;
+using processors::replay::MachineResult;
 
 namespace {
 
@@ -19,7 +19,7 @@ double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 // Adds a node's part of the frame to a load; means are sums until the end.
 void add_node(const MachineResult& result, std::size_t node, StageLoad& load) {
-  const processors::TimeDivision& time = result.nodes[node].time;
+  const processors::cost::TimeDivision& time = result.nodes[node].time;
   const auto of = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
   const auto end = static_cast<double>(result.end);
   const sim::Ticks waits = of(Activity::message_wait) + of(Activity::queue_full_wait) +
@@ -67,7 +67,7 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
   figures.all.name = "nodes";
   const bool pipeline = machine.scheme == Scheme::pipeline;
   if (pipeline) {
-    for (const std::string_view name : processors::stage_names) {
+    for (const std::string_view name : processors::flow::stage_names) {
       figures.stages.emplace_back().name = name;
     }
   }
@@ -75,7 +75,7 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
     add_node(result, node, figures.all);
     if (pipeline) {
       const auto port = static_cast<std::uint32_t>(node % machine.nodes);
-      const processors::Stage stage = processors::stage_of_node(machine.pipeline, port);
+      const processors::flow::Stage stage = processors::flow::stage_of_node(machine.pipeline, port);
       add_node(result, node, figures.stages[static_cast<std::size_t>(stage)]);
     }
   }
@@ -106,7 +106,7 @@ FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) 
   if (machine.scheme == Scheme::image) {
     return waits;
   }
-  const processors::TimeDivision time = result.time();
+  const processors::cost::TimeDivision time = result.time();
   const auto of = [&](Activity activity) {
     return static_cast<double>(time[static_cast<std::size_t>(activity)]);
   };
@@ -122,4 +122,4 @@ FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) 
   return waits;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

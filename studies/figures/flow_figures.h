@@ -8,7 +8,7 @@
 
 #include "processors/replay/replay.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// The nodes of one stage of all clusters, or all nodes where there are no stages.
 struct StageLoad {
@@ -36,8 +36,8 @@ struct FlowFigures {
 };
 
 /// `result` must be of a scheme in which rays move.
-[[nodiscard]] FlowFigures flow_figures(const processors::MachineConfig& machine,
-                                       const processors::MachineResult& result);
+[[nodiscard]] FlowFigures flow_figures(const processors::machine::MachineConfig& machine,
+                                       const processors::replay::MachineResult& result);
 
 /// What the nodes' waits for rays and for queues are due to: the part that is always busy, if there is one
 /// (the slowest stage; without stages the busiest node), else full queues and messages. Ticks; all are 0 with
@@ -47,18 +47,18 @@ struct FlowWaits {
   double queues = 0.0;
   double messages = 0.0;
 };
-[[nodiscard]] FlowWaits flow_waits(const processors::MachineConfig& machine,
-                                   const processors::MachineResult& result);
+[[nodiscard]] FlowWaits flow_waits(const processors::machine::MachineConfig& machine,
+                                   const processors::replay::MachineResult& result);
 
 /// What else may keep all nodes waiting where rays move: a host that sends or collects as fast as it can, or
 /// a network whose links are full.
 enum class Bottleneck : std::uint8_t { none, host, network };
-[[nodiscard]] Bottleneck bottleneck_of(const processors::MachineConfig& machine,
-                                       const processors::MachineResult& result);
+[[nodiscard]] Bottleneck bottleneck_of(const processors::machine::MachineConfig& machine,
+                                       const processors::replay::MachineResult& result);
 
 /// A shared resource that is busy for this share of the frame or longer counts as full.
 inline constexpr double full = 0.9;
 /// Above this share of the frame a stage or a node counts as always busy.
 inline constexpr double always_busy = 0.8;
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 struct Formula::Node {
   char operation = 0;  // 'f': a figure, 'c': a constant, 'm': the smaller of both, else as written
@@ -102,4 +102,4 @@ std::string Formula::text() const { return node_->text(); }
 
 bool Formula::is_relative() const { return node_->is_relative(); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

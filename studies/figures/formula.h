@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// Whose figure a formula reads: the machine's own, or one of a machine that it is measured against.
 enum class Whose : std::uint8_t {
@@ -48,4 +48,4 @@ class Formula {
   std::shared_ptr<const Node> node_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -4,7 +4,7 @@
 
 #include "sim/statistics.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 namespace {
 
@@ -28,7 +28,7 @@ void add_network(MachineTotals& totals, const memory::NetworkStatistics& part) {
   totals.most_network_busy = std::max(totals.most_network_busy, part.busy);
 }
 
-void add_cluster(MachineTotals& totals, const processors::ClusterResult& cluster) {
+void add_cluster(MachineTotals& totals, const processors::replay::ClusterResult& cluster) {
   merge_into(totals.interconnect, cluster.interconnect);
   merge_waits(totals.interconnect_waits, cluster.interconnect.waits);
   totals.most_interconnect_busy = std::max(totals.most_interconnect_busy, cluster.interconnect.busy);
@@ -49,18 +49,18 @@ void add_cluster(MachineTotals& totals, const processors::ClusterResult& cluster
 
 }  // namespace
 
-MachineTotals totals_of(const processors::MachineResult& result) {
+MachineTotals totals_of(const processors::replay::MachineResult& result) {
   MachineTotals totals;
-  for (const processors::ClusterResult& cluster : result.clusters) {
+  for (const processors::replay::ClusterResult& cluster : result.clusters) {
     add_cluster(totals, cluster);
   }
   for (const memory::NetworkStatistics& network : result.flow.networks) {
     add_network(totals, network);
   }
-  for (const processors::NodeStatistics& node : result.nodes) {
+  for (const processors::cost::NodeStatistics& node : result.nodes) {
     merge_into(totals.node, node);
   }
-  for (const processors::FlowCounts& node : result.flow.nodes) {
+  for (const processors::flow::FlowCounts& node : result.flow.nodes) {
     merge_into(totals.flow, node);
   }
   for (const memory::WaitStatistics& waits : result.l2.waits) {
@@ -69,4 +69,4 @@ MachineTotals totals_of(const processors::MachineResult& result) {
   return totals;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

@@ -7,7 +7,7 @@
 #include "memory/wait_statistics.h"
 #include "processors/replay/replay.h"
 
-namespace marti::studies {
+namespace marti::studies::figures {
 
 /// Parts that a machine does not have have no value.
 struct MachineTotals {
@@ -16,8 +16,8 @@ struct MachineTotals {
   std::optional<memory::DramStatistics> dram;
   std::optional<memory::DistributedStatistics> distributed;
   std::optional<memory::NetworkStatistics> network;
-  std::optional<processors::NodeStatistics> node;
-  std::optional<processors::FlowCounts> flow;
+  std::optional<processors::cost::NodeStatistics> node;
+  std::optional<processors::flow::FlowCounts> flow;
   std::optional<memory::WaitStatistics> interconnect_waits;
   std::optional<memory::WaitStatistics> bank_waits;
   std::optional<memory::WaitStatistics> network_waits;
@@ -29,6 +29,6 @@ struct MachineTotals {
 };
 
 /// Throws InternalError for a sum that does not fit.
-[[nodiscard]] MachineTotals totals_of(const processors::MachineResult& result);
+[[nodiscard]] MachineTotals totals_of(const processors::replay::MachineResult& result);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::figures

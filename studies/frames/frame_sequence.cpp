@@ -6,14 +6,14 @@
 #include "studies/host/image_file.h"
 #include "studies/run/open_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
-FrameSequence::FrameSequence(const FrameConfig& config)
-    : FrameSequence(
-          with_scene_keys([&] { return scenes::open_animated(config.scene, config.open, decode_image); }),
-          config.frames) {}
+FrameSequence::FrameSequence(const keys::FrameConfig& config)
+    : FrameSequence(run::with_scene_keys(
+                        [&] { return scenes::open_animated(config.scene, config.open, host::decode_image); }),
+                    config.frames) {}
 
-FrameSequence::FrameSequence(scenes::AnimatedScene scene, const FrameRange& range)
+FrameSequence::FrameSequence(scenes::AnimatedScene scene, const keys::FrameRange& range)
     : scene_(std::move(scene)), range_(range) {
   for (std::uint32_t i = 0; i < range_.count; ++i) {
     const scenes::Bounds frame = scenes::bounds_of(pose(i));
@@ -25,7 +25,7 @@ FrameSequence::FrameSequence(scenes::AnimatedScene scene, const FrameRange& rang
 }
 
 scenes::Scene FrameSequence::pose(std::uint32_t i) const {
-  return with_scene_keys([&] { return scene_.at(range_.time(i)); });
+  return run::with_scene_keys([&] { return scene_.at(range_.time(i)); });
 }
 
 void FrameSequence::visit(const std::function<void(const PosedFrame&)>& visitor) const {
@@ -43,4 +43,4 @@ void FrameSequence::visit(const std::function<void(const PosedFrame&)>& visitor)
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -8,7 +8,7 @@
 #include "scenes/animated.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 struct PosedFrame {
   std::uint32_t number = 0;  ///< as the animation counts: frames.first for the first of the sequence
@@ -23,8 +23,8 @@ class FrameSequence {
  public:
   /// Opens the scene and poses every frame once. Throws UserError when the scene cannot be used or a frame
   /// cannot be posed.
-  explicit FrameSequence(const FrameConfig& config);
-  FrameSequence(scenes::AnimatedScene scene, const FrameRange& range);
+  explicit FrameSequence(const keys::FrameConfig& config);
+  FrameSequence(scenes::AnimatedScene scene, const keys::FrameRange& range);
 
   [[nodiscard]] std::uint32_t size() const { return range_.count; }
 
@@ -40,8 +40,8 @@ class FrameSequence {
   [[nodiscard]] scenes::Scene pose(std::uint32_t i) const;
 
   scenes::AnimatedScene scene_;
-  FrameRange range_;
+  keys::FrameRange range_;
   scenes::Bounds bounds_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -2,9 +2,9 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
-using processors::BranchStart;
+using processors::walk::BranchStart;
 
 std::vector<BranchStart> partial_starts(const accel::OctreeUpdate& update) {
   const auto& nodes = update.build.topology.nodes;
@@ -44,4 +44,4 @@ std::vector<BranchStart> carried_starts(const accel::OctreeUpdate& update,
   return starts;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -15,10 +15,10 @@
 #include "accel/octree_update.h"
 #include "processors/walk/build_start.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 /// Rebuilding in part: altered branches are split before the frame, all others are kept.
-[[nodiscard]] std::vector<processors::BranchStart> partial_starts(const accel::OctreeUpdate& update);
+[[nodiscard]] std::vector<processors::walk::BranchStart> partial_starts(const accel::OctreeUpdate& update);
 
 /// Rebuilding in part and on demand, after a frame that left the branches `built` of the old tree with their
 /// children (one entry a node of it):
@@ -26,7 +26,7 @@ namespace marti::studies {
 ///   an altered branch returns to P, unless it was built and a kept one lies below it: then it is split
 ///   before the frame, so that what is below can stay.
 /// Throws InternalError when `built` does not fit the old tree.
-[[nodiscard]] std::vector<processors::BranchStart> carried_starts(const accel::OctreeUpdate& update,
-                                                                  std::span<const std::uint8_t> built);
+[[nodiscard]] std::vector<processors::walk::BranchStart> carried_starts(const accel::OctreeUpdate& update,
+                                                                        std::span<const std::uint8_t> built);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 namespace {
 
@@ -56,54 +56,56 @@ TreeChange change_of(const FrameTree& tree) {
   return change;
 }
 
-Table frame_table(std::span<const FrameOutcome> frames) {
-  Table table("frames", "Frames: what moved, and what an update of the tree alters",
-              {{"frame", ColumnType::integer, "1", "number of the frame"},
-               {"time", ColumnType::real, "s", "from the animation's beginning"},
-               {"moved", ColumnType::integer, "1", "primitives that moved since the frame before"},
-               {"nodes", ColumnType::integer, "1", "nodes of the whole tree"},
-               {"branches", ColumnType::integer, "1", "of these, branches"},
-               {"altered", ColumnType::integer, "1", "nodes whose record or list must be made anew"},
-               {"kept", ColumnType::real, "fraction", "nodes that stay as they were"},
-               {"resorted", ColumnType::integer, "1", "branches that sort moved primitives only"},
-               {"split", ColumnType::integer, "1", "branches whose children are made anew"},
-               {"sorted", ColumnType::real, "fraction",
-                "primitives that the update sorts, once a node, against a build from nothing"},
-               {"tests", ColumnType::real, "fraction", "overlap tests that it runs, against such a build"},
-               {"hit_hash", ColumnType::text, "", "hash of every ray's outcome"},
-               {"image_hash", ColumnType::text, "", "hash of the pixels' bits"}});
+tables::Table frame_table(std::span<const FrameOutcome> frames) {
+  tables::Table table(
+      "frames", "Frames: what moved, and what an update of the tree alters",
+      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
+       {"time", tables::ColumnType::real, "s", "from the animation's beginning"},
+       {"moved", tables::ColumnType::integer, "1", "primitives that moved since the frame before"},
+       {"nodes", tables::ColumnType::integer, "1", "nodes of the whole tree"},
+       {"branches", tables::ColumnType::integer, "1", "of these, branches"},
+       {"altered", tables::ColumnType::integer, "1", "nodes whose record or list must be made anew"},
+       {"kept", tables::ColumnType::real, "fraction", "nodes that stay as they were"},
+       {"resorted", tables::ColumnType::integer, "1", "branches that sort moved primitives only"},
+       {"split", tables::ColumnType::integer, "1", "branches whose children are made anew"},
+       {"sorted", tables::ColumnType::real, "fraction",
+        "primitives that the update sorts, once a node, against a build from nothing"},
+       {"tests", tables::ColumnType::real, "fraction", "overlap tests that it runs, against such a build"},
+       {"hit_hash", tables::ColumnType::text, "", "hash of every ray's outcome"},
+       {"image_hash", tables::ColumnType::text, "", "hash of the pixels' bits"}});
   for (const FrameOutcome& frame : frames) {
     const TreeChange& change = frame.change;
-    table.add_row({count_cell(frame.number), frame.seconds, count_cell(change.moved),
-                   count_cell(change.nodes), count_cell(change.branches), count_cell(change.altered),
-                   share(change.nodes - change.altered, change.nodes), count_cell(change.resorted),
-                   count_cell(change.split), share(change.sorted, change.all_sorted),
-                   share(change.tests, change.all_tests), hash_text(frame.hit_hash),
-                   hash_text(frame.image_hash)});
+    table.add_row({tables::count_cell(frame.number), frame.seconds, tables::count_cell(change.moved),
+                   tables::count_cell(change.nodes), tables::count_cell(change.branches),
+                   tables::count_cell(change.altered), share(change.nodes - change.altered, change.nodes),
+                   tables::count_cell(change.resorted), tables::count_cell(change.split),
+                   share(change.sorted, change.all_sorted), share(change.tests, change.all_tests),
+                   hash_text(frame.hit_hash), hash_text(frame.image_hash)});
   }
   return table;
 }
 
-Table cycle_table(std::span<const FrameOutcome> frames) {
-  Table table("cycles", "The cycle \"build, render\" of each frame",
-              {{"frame", ColumnType::integer, "1", "number of the frame"},
-               {"way", ColumnType::text, "", "how the machine comes by the frame's tree"},
-               {"build", ColumnType::integer, "ps", "time for building before the frame"},
-               {"render", ColumnType::integer, "ps", "time of the frame, building on demand included"},
-               {"cycle", ColumnType::integer, "ps", "both"},
-               {"building", ColumnType::integer, "ps",
-                "compute time for building before the frame and in it, all nodes together"},
-               {"start_up_splits", ColumnType::integer, "1", "branches split before the frame"},
-               {"splits", ColumnType::integer, "1", "branches split before the frame and in it"},
-               {"branches", ColumnType::integer, "1", "branches at the end of the frame"},
-               {"partial", ColumnType::integer, "1", "partially built nodes at the end of the frame"},
-               {"memory", ColumnType::integer, "byte", "records and lists at the end of the frame"},
-               {"cycle_saved", ColumnType::real, "fraction", "of the cycle with the whole tree rebuilt"}});
+tables::Table cycle_table(std::span<const FrameOutcome> frames) {
+  tables::Table table(
+      "cycles", "The cycle \"build, render\" of each frame",
+      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
+       {"way", tables::ColumnType::text, "", "how the machine comes by the frame's tree"},
+       {"build", tables::ColumnType::integer, "ps", "time for building before the frame"},
+       {"render", tables::ColumnType::integer, "ps", "time of the frame, building on demand included"},
+       {"cycle", tables::ColumnType::integer, "ps", "both"},
+       {"building", tables::ColumnType::integer, "ps",
+        "compute time for building before the frame and in it, all nodes together"},
+       {"start_up_splits", tables::ColumnType::integer, "1", "branches split before the frame"},
+       {"splits", tables::ColumnType::integer, "1", "branches split before the frame and in it"},
+       {"branches", tables::ColumnType::integer, "1", "branches at the end of the frame"},
+       {"partial", tables::ColumnType::integer, "1", "partially built nodes at the end of the frame"},
+       {"memory", tables::ColumnType::integer, "byte", "records and lists at the end of the frame"},
+       {"cycle_saved", tables::ColumnType::real, "fraction", "of the cycle with the whole tree rebuilt"}});
   for (const FrameOutcome& frame : frames) {
     const sim::Ticks rebuild = cycle_of(frame, FrameWay::rebuild_all);
     for (std::size_t way = 0; way < frame_ways; ++way) {
       const WayOutcome& outcome = frame.ways[way];
-      table.add_row({count_cell(frame.number), std::string(frame_way_names[way]), outcome.build,
+      table.add_row({tables::count_cell(frame.number), std::string(frame_way_names[way]), outcome.build,
                      outcome.render, outcome.cycle(), outcome.building, outcome.start_up_splits,
                      outcome.all_splits(), outcome.branches, outcome.partial, outcome.bytes,
                      saved(outcome.cycle(), rebuild)});
@@ -112,18 +114,19 @@ Table cycle_table(std::span<const FrameOutcome> frames) {
   return table;
 }
 
-Table total_table(std::span<const FrameOutcome> frames) {
-  Table table("totals", "All frames together",
-              {{"way", ColumnType::text, "", "how the machine comes by a frame's tree"},
-               {"build", ColumnType::integer, "ps", "time for building before frames"},
-               {"render", ColumnType::integer, "ps", "time of frames, building on demand included"},
-               {"cycle", ColumnType::integer, "ps", "both"},
-               {"building", ColumnType::integer, "ps", "compute time for building, all nodes together"},
-               {"splits", ColumnType::integer, "1", "branches split"},
-               {"largest", ColumnType::integer, "byte", "records and lists, of the frame with most"},
-               {"cycle_saved", ColumnType::real, "fraction", "of the cycles with the whole tree rebuilt"},
-               {"later_saved", ColumnType::real, "fraction",
-                "the same without the first frame, before which there is no tree"}});
+tables::Table total_table(std::span<const FrameOutcome> frames) {
+  tables::Table table(
+      "totals", "All frames together",
+      {{"way", tables::ColumnType::text, "", "how the machine comes by a frame's tree"},
+       {"build", tables::ColumnType::integer, "ps", "time for building before frames"},
+       {"render", tables::ColumnType::integer, "ps", "time of frames, building on demand included"},
+       {"cycle", tables::ColumnType::integer, "ps", "both"},
+       {"building", tables::ColumnType::integer, "ps", "compute time for building, all nodes together"},
+       {"splits", tables::ColumnType::integer, "1", "branches split"},
+       {"largest", tables::ColumnType::integer, "byte", "records and lists, of the frame with most"},
+       {"cycle_saved", tables::ColumnType::real, "fraction", "of the cycles with the whole tree rebuilt"},
+       {"later_saved", tables::ColumnType::real, "fraction",
+        "the same without the first frame, before which there is no tree"}});
   for (std::size_t way = 0; way < frame_ways; ++way) {
     WayOutcome sum;
     sim::Ticks rebuild = 0;
@@ -137,7 +140,7 @@ Table total_table(std::span<const FrameOutcome> frames) {
       splits += outcome.all_splits();
       rebuild = sim::add_ticks(rebuild, cycle_of(frame, FrameWay::rebuild_all));
     }
-    Cell later;
+    tables::Cell later;
     if (frames.size() > 1) {
       const FrameOutcome& first = frames.front();
       later = saved(sum.cycle() - first.ways[way].cycle(), rebuild - cycle_of(first, FrameWay::rebuild_all));
@@ -148,17 +151,18 @@ Table total_table(std::span<const FrameOutcome> frames) {
   return table;
 }
 
-Table host_frame_table(std::span<const FrameOutcome> frames) {
-  Table table("host_frames", "The trees on the host",
-              {{"frame", ColumnType::integer, "1", "number of the frame"},
-               {"build", ColumnType::real, "s", "the tree from nothing, on all host threads"},
-               {"update", ColumnType::real, "s", "the tree from the one before, on one host thread"}});
+tables::Table host_frame_table(std::span<const FrameOutcome> frames) {
+  tables::Table table(
+      "host_frames", "The trees on the host",
+      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
+       {"build", tables::ColumnType::real, "s", "the tree from nothing, on all host threads"},
+       {"update", tables::ColumnType::real, "s", "the tree from the one before, on one host thread"}});
   for (const FrameOutcome& frame : frames) {
     const bool first = &frame == frames.data();
-    table.add_row(
-        {count_cell(frame.number), frame.build_seconds, first ? Cell() : Cell(frame.update_seconds)});
+    table.add_row({tables::count_cell(frame.number), frame.build_seconds,
+                   first ? tables::Cell() : tables::Cell(frame.update_seconds)});
   }
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -8,7 +8,7 @@
 #include "studies/frames/frame_ways.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 /// What an update did to a tree. In a first frame everything was made anew.
 struct TreeChange {
@@ -38,12 +38,12 @@ struct FrameOutcome {
 };
 
 /// "frames": a row for each frame: what moved, what was altered, hashes.
-[[nodiscard]] Table frame_table(std::span<const FrameOutcome> frames);
+[[nodiscard]] tables::Table frame_table(std::span<const FrameOutcome> frames);
 /// "cycles": a row for each frame and way.
-[[nodiscard]] Table cycle_table(std::span<const FrameOutcome> frames);
+[[nodiscard]] tables::Table cycle_table(std::span<const FrameOutcome> frames);
 /// "totals": a row for each way, over all frames.
-[[nodiscard]] Table total_table(std::span<const FrameOutcome> frames);
+[[nodiscard]] tables::Table total_table(std::span<const FrameOutcome> frames);
 /// "host_frames": seconds of building and of updating on the host.
-[[nodiscard]] Table host_frame_table(std::span<const FrameOutcome> frames);
+[[nodiscard]] tables::Table host_frame_table(std::span<const FrameOutcome> frames);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

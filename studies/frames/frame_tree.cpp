@@ -5,7 +5,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 namespace {
 
@@ -39,4 +39,4 @@ FrameTree make_frame_tree(const FrameTree* before, const scenes::Scene& scene,
   return tree;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

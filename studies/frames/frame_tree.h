@@ -9,7 +9,7 @@
 #include "accel/structure.h"
 #include "scenes/scene.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 struct FrameTree {
   std::shared_ptr<const accel::TriangleSet> triangles;
@@ -28,4 +28,4 @@ struct FrameTree {
 [[nodiscard]] FrameTree make_frame_tree(const FrameTree* before, const scenes::Scene& scene,
                                         const accel::OctreeOptions& options);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

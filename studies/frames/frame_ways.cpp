@@ -6,16 +6,16 @@
 
 #include "studies/frames/frame_starts.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 namespace {
 
-WayOutcome outcome_of(const processors::MachineResult& result) {
+WayOutcome outcome_of(const processors::replay::MachineResult& result) {
   WayOutcome outcome;
   outcome.build = result.build.start_up;
   outcome.render = result.end - result.build.start_up;
-  outcome.building = result.time()[static_cast<std::size_t>(processors::Activity::building)];
-  const processors::BuildLevel all = result.build.all_levels();
+  outcome.building = result.time()[static_cast<std::size_t>(processors::cost::Activity::building)];
+  const processors::node::BuildLevel all = result.build.all_levels();
   outcome.start_up_splits = all.start_up_splits;
   outcome.splits = all.splits;
   outcome.branches = all.branches;
@@ -26,8 +26,8 @@ WayOutcome outcome_of(const processors::MachineResult& result) {
 
 }  // namespace
 
-WayOutcomes FrameWays::time(const processors::WorkLog& log, const accel::OctreeUpdate* update) {
-  std::array<processors::ReplayOptions, frame_ways> options;
+WayOutcomes FrameWays::time(const processors::program::WorkLog& log, const accel::OctreeUpdate* update) {
+  std::array<processors::replay::ReplayOptions, frame_ways> options;
   if (update != nullptr) {
     options[static_cast<std::size_t>(FrameWay::partial)].starts = partial_starts(*update);
     options[static_cast<std::size_t>(FrameWay::partial_dynamic)].starts = carried_starts(*update, built_);
@@ -37,12 +37,12 @@ WayOutcomes FrameWays::time(const processors::WorkLog& log, const accel::OctreeU
   std::vector<std::uint8_t> built;
   tbb::parallel_for(std::size_t{0}, frame_ways, [&](std::size_t i) {
     const auto way = static_cast<FrameWay>(i);
-    processors::MachineConfig machine = machine_;
+    processors::machine::MachineConfig machine = machine_;
     if (way == FrameWay::rebuild_all || way == FrameWay::partial) {
       machine.build = {};
-      machine.build.sharing = processors::Sharing::none;
+      machine.build.sharing = processors::machine::Sharing::none;
     }
-    processors::MachineResult result = processors::replay(log, machine, options[i]);
+    processors::replay::MachineResult result = processors::replay::replay(log, machine, options[i]);
     outcomes[i] = outcome_of(result);
     if (way == FrameWay::partial_dynamic) {
       built = std::move(result.build.built);
@@ -52,4 +52,4 @@ WayOutcomes FrameWays::time(const processors::WorkLog& log, const accel::OctreeU
   return outcomes;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -12,7 +12,7 @@
 #include "processors/program/work_log.h"
 #include "processors/replay/replay.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 /// rebuild_all: the whole tree is built before each frame, and its time counts. partial: only altered
 /// branches are split before the frame, the rest is kept. dynamic: the initial tree is built before each
@@ -44,15 +44,15 @@ using WayOutcomes = std::array<WayOutcome, frame_ways>;
 class FrameWays {
  public:
   /// `machine.build` is that of the ways that build on demand: shared or private.
-  explicit FrameWays(const processors::MachineConfig& machine) : machine_(machine) {}
+  explicit FrameWays(const processors::machine::MachineConfig& machine) : machine_(machine) {}
 
   /// The next frame. `update` is that from the frame before to this one, null for the first. The four are
   /// simulated at the same time; the results do not depend on how many host threads there are.
-  [[nodiscard]] WayOutcomes time(const processors::WorkLog& log, const accel::OctreeUpdate* update);
+  [[nodiscard]] WayOutcomes time(const processors::program::WorkLog& log, const accel::OctreeUpdate* update);
 
  private:
-  processors::MachineConfig machine_;
+  processors::machine::MachineConfig machine_;
   std::vector<std::uint8_t> built_;  ///< what partial_dynamic's last frame left; see BuildResult::built
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

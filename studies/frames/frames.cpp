@@ -21,7 +21,7 @@
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 namespace {
 
@@ -29,15 +29,16 @@ namespace {
 /// image must be the same. With the voxel cut the cells must be those of `tree`, or the image is another
 /// approximation.
 void verify(const FramesConfig& config, const PosedFrame& pose, const FrameTree& tree,
-            const processors::Frame& frame) {
+            const processors::program::Frame& frame) {
   accel::OctreeOptions options = config.frame.structure_options.octree;
   if (config.frame.render.voxel_cut > 0.0) {
     options = tree.octree->concrete().options();
   }
   const accel::StructureOf<accel::Octree> fresh(accel::Octree::build(tree.triangles, options));
-  const processors::Frame other = render(pose.scene, *tree.triangles, fresh, config.frame.render);
+  const processors::program::Frame other =
+      processors::program::render(pose.scene, *tree.triangles, fresh, config.frame.render);
   sim::ensure(other.hit_hash == frame.hit_hash && other.image.pixels.size() == frame.image.pixels.size() &&
-                  image_hash(other.image) == image_hash(frame.image),
+                  run::image_hash(other.image) == run::image_hash(frame.image),
               "an updated octree gives another image than one built from nothing");
 }
 
@@ -54,19 +55,20 @@ class FramesStudy {
   }
 
   [[nodiscard]] const std::vector<FrameOutcome>& outcomes() const { return outcomes_; }
-  [[nodiscard]] std::vector<StudyImage> take_images() { return std::move(images_); }
+  [[nodiscard]] std::vector<tables::StudyImage> take_images() { return std::move(images_); }
 
  private:
   void add(const PosedFrame& pose) {
     sim::WorkMeter* const meter = config_.frame.meter;
     sim::begin_part(meter, fmt::format("building the tree of frame {}", pose.number));
     FrameTree tree = make_frame_tree(before_ ? &*before_ : nullptr, pose.scene, options_);
-    refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
-    processors::RenderOptions options = config_.frame.render;
+    run::refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
+    processors::program::RenderOptions options = config_.frame.render;
     options.record = true;
     options.meter = meter;
     sim::begin_part(meter, fmt::format("tracing frame {}", pose.number), "rows", options.height);
-    processors::Frame frame = render(pose.scene, *tree.triangles, *tree.octree, options);
+    processors::program::Frame frame =
+        processors::program::render(pose.scene, *tree.triangles, *tree.octree, options);
     if (config_.verify) {
       verify(config_, pose, tree, frame);
     }
@@ -75,7 +77,7 @@ class FramesStudy {
     outcome.seconds = pose.seconds;
     outcome.change = change_of(tree);
     outcome.hit_hash = frame.hit_hash;
-    outcome.image_hash = image_hash(frame.image);
+    outcome.image_hash = run::image_hash(frame.image);
     outcome.build_seconds = tree.build_seconds;
     outcome.update_seconds = tree.update_seconds;
     sim::begin_part(meter, fmt::format("timing frame {}", pose.number));
@@ -91,15 +93,15 @@ class FramesStudy {
   FrameWays ways_;
   std::optional<FrameTree> before_;
   std::vector<FrameOutcome> outcomes_;
-  std::vector<StudyImage> images_;
+  std::vector<tables::StudyImage> images_;
 };
 
 std::string head_of(const sim::Config& config, const FramesConfig& frames, std::size_t count) {
-  const processors::BuildConfig& build = frames.machine.build;
+  const processors::machine::BuildConfig& build = frames.machine.build;
   std::string initial = "the whole tree";
-  if (build.initial == processors::InitialTree::level) {
+  if (build.initial == processors::machine::InitialTree::level) {
     initial = fmt::format("level {}", build.level);
-  } else if (build.initial == processors::InitialTree::rule) {
+  } else if (build.initial == processors::machine::InitialTree::rule) {
     initial = fmt::format("the level of rule k = {:g}", build.rule_k);
   }
   return fmt::format(
@@ -112,40 +114,42 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
       "partial          altered branches are built anew before each frame, the rest is kept\n"
       "dynamic          built before each frame to {}, the rest on demand ({})\n"
       "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
-      frames.frame.scene, counted(count, "frame"), frames.frame.frames.rate, frames.frame.frames.first,
-      frames.frame.render.width, frames.frame.render.height,
+      frames.frame.scene, tables::counted(count, "frame"), frames.frame.frames.rate,
+      frames.frame.frames.first, frames.frame.render.width, frames.frame.render.height,
       frames.verify ? ", each equal to that of a tree built from nothing" : "",
-      counted(frames.machine.all_nodes(), "node"), sim::print_frequency(config.frequency("node.clock")),
-      config.choice_name("costs.preset"), initial,
-      processors::sharing_names[static_cast<std::size_t>(build.sharing)]);
+      tables::counted(frames.machine.all_nodes(), "node"),
+      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"), initial,
+      processors::machine::sharing_names[static_cast<std::size_t>(build.sharing)]);
 }
 
 }  // namespace
 
-StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
+tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
   FramesConfig frames = read_frames(config);
   frames.frame.meter = meter;
   FramesStudy study(frames);
   study.run();
   const std::vector<FrameOutcome>& outcomes = study.outcomes();
 
-  StudyOutput output;
+  tables::StudyOutput output;
   output.tables = {frame_table(outcomes), cycle_table(outcomes), total_table(outcomes)};
-  const Table& cycles = output.tables[1];
+  const tables::Table& cycles = output.tables[1];
   output.report =
-      head_of(config, frames, outcomes.size()) + "\n" + text_of(output.tables[0]) + "\n" +
-      side_by_side(cycles, "frame", "way", "build", "Build: time before each frame") + "\n" +
-      side_by_side(cycles, "frame", "way", "render",
-                   "Render: time of each frame, building on demand included") +
-      "\n" + side_by_side(cycles, "frame", "way", "cycle", "Cycle: both") + "\n" +
-      side_by_side(cycles, "frame", "way", "splits", "Branches split, before the frame and in it") + "\n" +
-      side_by_side(cycles, "frame", "way", "memory", "Memory: records and lists at the end of each frame") +
-      "\n" + text_of(output.tables[2]);
-  output.tables.push_back(provenance_table(config.effective_values()));
-  output.host_tables = {host_frame_table(outcomes), host_table()};
-  output.host_report = text_of(output.host_tables[0]) + "\n" + text_of(output.host_tables[1]);
+      head_of(config, frames, outcomes.size()) + "\n" + tables::text_of(output.tables[0]) + "\n" +
+      tables::side_by_side(cycles, "frame", "way", "build", "Build: time before each frame") + "\n" +
+      tables::side_by_side(cycles, "frame", "way", "render",
+                           "Render: time of each frame, building on demand included") +
+      "\n" + tables::side_by_side(cycles, "frame", "way", "cycle", "Cycle: both") + "\n" +
+      tables::side_by_side(cycles, "frame", "way", "splits", "Branches split, before the frame and in it") +
+      "\n" +
+      tables::side_by_side(cycles, "frame", "way", "memory",
+                           "Memory: records and lists at the end of each frame") +
+      "\n" + tables::text_of(output.tables[2]);
+  output.tables.push_back(tables::provenance_table(config.effective_values()));
+  output.host_tables = {host_frame_table(outcomes), tables::host_table()};
+  output.host_report = tables::text_of(output.host_tables[0]) + "\n" + tables::text_of(output.host_tables[1]);
   output.images = study.take_images();
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

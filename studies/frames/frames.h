@@ -7,12 +7,12 @@
 #include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 /// Poses, builds, renders and times all frames, one after the other. Throws UserError for anything wrong with
 /// the input, InternalError when an updated tree is not the one of a fresh build or gives another image. The
 /// reproducible tables, the images and the report do not depend on the number of host threads.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

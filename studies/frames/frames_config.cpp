@@ -9,12 +9,12 @@
 #include "studies/keys/build_keys.h"
 #include "studies/keys/machine_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 namespace {
 
 /// The images of all frames are kept until all are done, so that their files appear together.
-void refuse_many_images(const sim::Config& config, const FrameConfig& frame) {
+void refuse_many_images(const sim::Config& config, const keys::FrameConfig& frame) {
   const std::uint64_t bytes =
       std::uint64_t{frame.frames.count} * frame.render.width * frame.render.height * sizeof(glm::vec3);
   if (const std::string excess = frame.memory.excess(bytes); !excess.empty()) {
@@ -25,7 +25,8 @@ void refuse_many_images(const sim::Config& config, const FrameConfig& frame) {
 
 /// All ways are simulated at the same time.
 void refuse_large_machines(const sim::Config& config, const FramesConfig& frames) {
-  const std::string excess = frames.frame.memory.excess(frame_ways * processors::host_bytes(frames.machine));
+  const std::string excess =
+      frames.frame.memory.excess(frame_ways * processors::replay::host_bytes(frames.machine));
   if (!excess.empty()) {
     config.fail("machine.nodes", "simulating " + std::to_string(frame_ways) +
                                      " machines of these nodes and their caches takes" + excess);
@@ -36,7 +37,7 @@ void refuse_large_machines(const sim::Config& config, const FramesConfig& frames
 
 FramesConfig read_frames(sim::Config& config) {
   FramesConfig frames;
-  frames.frame = read_frame(config);
+  frames.frame = keys::read_frame(config);
   if (frames.frame.structure != "octree") {
     config.fail("structure.kind", "only an octree is rebuilt in part");
   }
@@ -44,9 +45,9 @@ FramesConfig read_frames(sim::Config& config) {
     config.fail("image.voxel_cut_reference",
                 "the study renders no exact image beside one with the voxel cut");
   }
-  frames.machine = read_machine(config);
-  frames.machine.build = read_dynamic_build(config);
-  check_machine(config, frames.machine);
+  frames.machine = keys::read_machine(config);
+  frames.machine.build = keys::read_dynamic_build(config);
+  keys::check_machine(config, frames.machine);
   frames.verify = config.boolean("frames.verify");
   config.refuse_unused();
   refuse_many_images(config, frames.frame);
@@ -54,4 +55,4 @@ FramesConfig read_frames(sim::Config& config) {
   return frames;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

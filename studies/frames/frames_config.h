@@ -5,12 +5,12 @@
 #include "sim/config.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::frames {
 
 struct FramesConfig {
-  FrameConfig frame;
+  keys::FrameConfig frame;
   /// Its `build` is that of the ways that build on demand: shared or private, with the initial tree.
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   bool verify = true;  ///< render every frame with a tree built from nothing too
 };
 
@@ -18,4 +18,4 @@ struct FramesConfig {
 /// another structure than an octree; frames or machines that would take more than the memory limit.
 [[nodiscard]] FramesConfig read_frames(sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::frames

@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
@@ -61,4 +61,4 @@ Resource fewer(const Changer& changer, Part part, std::string_view key, std::int
   return made(changer, part, key, std::clamp(std::min(now - 1, less), std::min(least, now), now), least);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

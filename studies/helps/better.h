@@ -6,7 +6,7 @@
 
 #include "studies/helps/resource.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// A tenth more, rounded up.
 [[nodiscard]] std::int64_t tenth_more(std::int64_t count);
@@ -21,4 +21,4 @@ namespace marti::studies {
 /// A number of cycles or bytes that is to be small: eleven tenths become ten, or one less; `least`.
 [[nodiscard]] Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least = 0);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

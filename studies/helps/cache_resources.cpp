@@ -7,12 +7,12 @@
 
 #include "studies/helps/better.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
-using processors::CacheOrganisation;
-using processors::SecondLevel;
+using processors::machine::CacheOrganisation;
+using processors::machine::SecondLevel;
 
 // Ways between those of a cache and the next that divide its lines are tried up to this many.
 constexpr std::uint32_t most_ways_tried = 64;
@@ -51,13 +51,13 @@ Resource more_ways(const Changer& changer, Part part, std::string_view key,
           changer.with({{key, std::int64_t{memory::full_ways}}})};
 }
 
-void add_first_level(const Changer& changer, const processors::NodeCacheConfig& cache,
+void add_first_level(const Changer& changer, const processors::machine::NodeCacheConfig& cache,
                      std::uint64_t database_bytes, std::vector<Resource>& resources) {
   if (cache.organisation == CacheOrganisation::unified) {
     resources.push_back(
         larger(changer, Part::caches, "cache.size", cache.cache, cache.cache.size, database_bytes));
   } else {
-    constexpr std::array<std::string_view, processors::split_caches> sizes = {
+    constexpr std::array<std::string_view, processors::machine::split_caches> sizes = {
         "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       resources.push_back(
@@ -78,13 +78,13 @@ void add_first_level(const Changer& changer, const processors::NodeCacheConfig& 
 
 }  // namespace
 
-void add_caches(const Changer& changer, const processors::MachineConfig& machine,
+void add_caches(const Changer& changer, const processors::machine::MachineConfig& machine,
                 std::uint64_t database_bytes, std::vector<Resource>& resources) {
   if (machine.cache.organisation != CacheOrganisation::none) {
     add_first_level(changer, machine.cache, database_bytes, resources);
   }
   if (machine.l2.sharing != SecondLevel::none) {
-    const memory::CacheConfig cache = processors::second_level_cache(machine);
+    const memory::CacheConfig cache = processors::machine::second_level_cache(machine);
     resources.push_back(larger(changer, Part::second_level, "l2.size", cache, cache.size, database_bytes));
     if (cache.ways != memory::full_ways) {
       resources.push_back(more_ways(changer, Part::second_level, "l2.ways", cache));
@@ -93,4 +93,4 @@ void add_caches(const Changer& changer, const processors::MachineConfig& machine
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

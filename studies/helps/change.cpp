@@ -9,7 +9,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/setting_value.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 std::optional<Change> Changer::with(const std::vector<NewValue>& values) const {
   std::vector<KeyChange> keys;
@@ -55,7 +55,7 @@ std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim
   }
   sim::Config config = config_.with(settings);
   try {
-    return Change{std::move(keys), std::move(settings), read_machine(config)};
+    return Change{std::move(keys), std::move(settings), keys::read_machine(config)};
   } catch (const sim::UserError&) {
     return std::nullopt;
   }
@@ -64,12 +64,12 @@ std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim
 std::string describe(const std::vector<KeyChange>& keys) {
   std::string text;
   for (const KeyChange& key : keys) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.key, plain_setting(key.from));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.key, keys::plain_setting(key.from));
     if (key.from != key.to) {
-      text += fmt::format(" -> {}", plain_setting(key.to));
+      text += fmt::format(" -> {}", keys::plain_setting(key.to));
     }
   }
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

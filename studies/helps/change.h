@@ -9,7 +9,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// A key and its values before and after, as one would write them in a TOML file. Both are equal for a key
 /// that was not given: its value followed from other keys, and must now be given so that it does not change
@@ -30,7 +30,7 @@ struct NewValue {
 struct Change {
   std::vector<KeyChange> keys;         ///< all that must be given to get the machine
   std::vector<sim::Setting> settings;  ///< of all keys that must be set
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
 };
 
 /// Makes changes of the machine that a configuration describes.
@@ -68,4 +68,4 @@ class Changer {
 /// it is.
 [[nodiscard]] std::string describe(const std::vector<KeyChange>& keys);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

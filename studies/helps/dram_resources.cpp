@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
@@ -43,4 +43,4 @@ void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vecto
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

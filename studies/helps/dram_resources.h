@@ -6,8 +6,8 @@
 #include "processors/machine/machine_config.h"
 #include "studies/helps/resource.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vector<Resource>& resources);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -7,17 +7,17 @@
 
 #include "studies/helps/better.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::PipelineConfig;
-using processors::Scheme;
+using processors::machine::MachineConfig;
+using processors::machine::PipelineConfig;
+using processors::machine::Scheme;
 
 void add_stages(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
   constexpr std::array<std::pair<std::string_view, std::uint32_t PipelineConfig::*>,
-                       processors::pipeline_stages>
+                       processors::machine::pipeline_stages>
       stages = {{{"pipeline.search", &PipelineConfig::search},
                  {"pipeline.nearest", &PipelineConfig::nearest},
                  {"pipeline.shade", &PipelineConfig::shade}}};
@@ -41,7 +41,8 @@ void add_queues(const Changer& changer, const MachineConfig& machine, std::vecto
   if ((pipeline ? machine.pipeline.in_flight : machine.space.in_flight) > 0) {
     Resource rays = more(changer, Part::queues, section + "in_flight");
     if (pipeline) {
-      rays.best = changer.with({{"pipeline.in_flight", std::int64_t{most_in_flight(machine.pipeline)}}});
+      rays.best = changer.with(
+          {{"pipeline.in_flight", std::int64_t{processors::machine::most_in_flight(machine.pipeline)}}});
     }
     resources.push_back(std::move(rays));
   }
@@ -51,7 +52,7 @@ void add_queues(const Changer& changer, const MachineConfig& machine, std::vecto
 
 void add_flow(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
   const bool image = machine.scheme == Scheme::image;
-  if (!image || machine.placement == processors::Placement::distributed) {
+  if (!image || machine.placement == processors::machine::Placement::distributed) {
     resources.push_back(faster_clock(changer, Part::network, "network.clock"));
     resources.push_back(fewer(changer, Part::network, "network.hop_cycles"));
     if (machine.network.kind != memory::NetworkKind::ideal) {
@@ -75,4 +76,4 @@ void add_flow(const Changer& changer, const MachineConfig& machine, std::vector<
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -5,11 +5,11 @@
 
 #include "studies/helps/resource.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// Adds the network, for rays that move or a distributed database; messages, queues and the rays in flight;
 /// the nodes of each stage of a pipeline, which are added to the machine; the level at which space is cut.
-void add_flow(const Changer& changer, const processors::MachineConfig& machine,
+void add_flow(const Changer& changer, const processors::machine::MachineConfig& machine,
               std::vector<Resource>& resources);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -1,12 +1,13 @@
 #include "studies/helps/least_time.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
-using processors::Activity;
+using processors::cost::Activity;
 
-sim::Ticks least_time(const processors::MachineConfig& machine, const processors::MachineResult& result,
-                      const processors::MachineConfig& changed) {
-  const processors::TimeDivision time = result.time();
+sim::Ticks least_time(const processors::machine::MachineConfig& machine,
+                      const processors::replay::MachineResult& result,
+                      const processors::machine::MachineConfig& changed) {
+  const processors::cost::TimeDivision time = result.time();
   sim::Ticks steps = 0;
   for (const Activity activity : {Activity::traversal, Activity::intersection, Activity::shading}) {
     steps = sim::add_ticks(steps, time[static_cast<std::size_t>(activity)]);
@@ -17,4 +18,4 @@ sim::Ticks least_time(const processors::MachineConfig& machine, const processors
   return changed.clock.cycles(cycles / nodes) + changed.clock.cycles(cycles % nodes) / nodes;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -9,7 +9,7 @@
 #include "studies/helps/verdict.h"
 #include "studies/helps/what_helps.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
@@ -36,9 +36,10 @@ double saved_by(const std::optional<MeasuredChange>& change) {
 
 class Measurement {
  public:
-  Measurement(const Changer& changer, const std::optional<Prices>& prices,
-              const processors::MachineConfig& machine, const processors::MachineResult& result,
-              const Counts& counts, const SharedLog& shared, Work budget)
+  Measurement(const Changer& changer, const std::optional<keys::Prices>& prices,
+              const processors::machine::MachineConfig& machine,
+              const processors::replay::MachineResult& result, const figures::Counts& counts,
+              const SharedLog& shared, Work budget)
       : changer_(changer),
         prices_(prices),
         machine_(machine),
@@ -87,7 +88,7 @@ class Measurement {
     Help help;
   };
   struct Replay {
-    const processors::MachineConfig* machine;
+    const processors::machine::MachineConfig* machine;
     MeasuredChange* into;
     double share = 0.0;            // how busy the resource is
     std::pair<Part, bool> part{};  // whether it is one of packets
@@ -110,7 +111,7 @@ class Measurement {
       measured.most_saved = saved_of(result_.end, least_time(machine_, result_, change->machine));
     }
     if (prices_) {
-      measured.price = cost_of(*prices_, change->machine) - cost_of(*prices_, machine_);
+      measured.price = keys::cost_of(*prices_, change->machine) - keys::cost_of(*prices_, machine_);
     }
     return measured;
   }
@@ -132,7 +133,7 @@ class Measurement {
 
   void replay(const std::vector<Replay>& wanted, Work kept = 0) {
     Work begun = 0;
-    std::vector<const processors::MachineConfig*> machines;
+    std::vector<const processors::machine::MachineConfig*> machines;
     std::vector<MeasuredChange*> changes;
     for (const Replay& one : wanted) {
       if (can_begin(one, kept, begun)) {
@@ -304,10 +305,10 @@ class Measurement {
   }
 
   const Changer& changer_;
-  const std::optional<Prices>& prices_;
-  const processors::MachineConfig& machine_;
-  const processors::MachineResult& result_;
-  const Counts& counts_;
+  const std::optional<keys::Prices>& prices_;
+  const processors::machine::MachineConfig& machine_;
+  const processors::replay::MachineResult& result_;
+  const figures::Counts& counts_;
   const SharedLog& shared_;
   bool limited_;
   bool few_ = false;       // the budget has room for few replays
@@ -319,11 +320,11 @@ class Measurement {
 
 }  // namespace
 
-WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& prices,
-                     const processors::MachineConfig& machine, const processors::MachineResult& result,
-                     const SharedLog& shared, Work budget) {
+WhatHelps what_helps(const sim::Config& config, const std::optional<keys::Prices>& prices,
+                     const processors::machine::MachineConfig& machine,
+                     const processors::replay::MachineResult& result, const SharedLog& shared, Work budget) {
   WhatHelps what;
-  const Counts counts = counts_of(machine, result);
+  const figures::Counts counts = figures::counts_of(machine, result);
   if (result.end > 0) {
     const Changer changer(config);
     what = Measurement(changer, prices, machine, result, counts, shared, budget).made();
@@ -332,4 +333,4 @@ WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& pri
   return what;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

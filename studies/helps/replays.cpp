@@ -11,12 +11,12 @@
 #include "processors/replay/host_bytes.h"
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::StrippedLog;
+using processors::machine::MachineConfig;
+using processors::walk::StrippedLog;
 
 // Neither counting nor energy changes a time.
 MachineConfig without_counting(const MachineConfig& machine) {
@@ -28,12 +28,12 @@ MachineConfig without_counting(const MachineConfig& machine) {
 
 Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
   sim::WorkMeter packets(shared.meter);
-  processors::ReplayOptions options = shared.options;
+  processors::replay::ReplayOptions options = shared.options;
   options.stripped = stripped_for(shared, machine);
   options.meter = &packets;
   try {
-    const processors::MachineResult result =
-        processors::replay(shared.log, without_counting(machine), options);
+    const processors::replay::MachineResult result =
+        processors::replay::replay(shared.log, without_counting(machine), options);
     return {result.end, false, replay_work(result, options.stripped)};
   } catch (const sim::UserError&) {
     return {};
@@ -50,13 +50,13 @@ const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& ma
 }
 
 bool has_room(const SharedLog& shared, const MachineConfig& machine) {
-  return processors::host_bytes(without_counting(machine)) <= shared.memory.left();
+  return processors::replay::host_bytes(without_counting(machine)) <= shared.memory.left();
 }
 
 std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines) {
   std::uint64_t largest = 1;
   for (const MachineConfig* const machine : machines) {
-    largest = std::max(largest, processors::host_bytes(without_counting(*machine)));
+    largest = std::max(largest, processors::replay::host_bytes(without_counting(*machine)));
   }
   const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / largest, 1, cores);
@@ -74,4 +74,4 @@ std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const Machin
   return replayed;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

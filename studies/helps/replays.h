@@ -11,24 +11,24 @@
 #include "sim/memory_budget.h"
 #include "studies/helps/work.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// What replays share: the work log, a stripped log for the machines that it suits (null: none), what the
 /// replays are to keep, and the memory that is left for them.
 struct SharedLog {
-  const processors::WorkLog& log;
-  std::shared_ptr<const processors::StrippedLog> stripped;
-  processors::ReplayOptions options;
+  const processors::program::WorkLog& log;
+  std::shared_ptr<const processors::walk::StrippedLog> stripped;
+  processors::replay::ReplayOptions options;
   sim::MemoryBudget memory;
   sim::WorkMeter* meter = nullptr;  ///< counts the replays; stopped, it stops them; null: nobody waits
 };
 
 /// The stripped log, if it suits the machine; else null.
-[[nodiscard]] const processors::StrippedLog* stripped_for(const SharedLog& shared,
-                                                          const processors::MachineConfig& machine);
+[[nodiscard]] const processors::walk::StrippedLog* stripped_for(
+    const SharedLog& shared, const processors::machine::MachineConfig& machine);
 
 /// Whether simulating the machine takes no more memory than is left.
-[[nodiscard]] bool has_room(const SharedLog& shared, const processors::MachineConfig& machine);
+[[nodiscard]] bool has_room(const SharedLog& shared, const processors::machine::MachineConfig& machine);
 
 struct Replayed {
   std::optional<sim::Ticks> end;  ///< std::nullopt: the replay was not finished
@@ -38,7 +38,7 @@ struct Replayed {
 
 /// Replays each machine, all of which have room. As many are replayed at a time as there are cores and memory
 /// for; results do not depend on it. Throws sim::Stopped.
-[[nodiscard]] std::vector<Replayed> replay_all(const SharedLog& shared,
-                                               std::span<const processors::MachineConfig* const> machines);
+[[nodiscard]] std::vector<Replayed> replay_all(
+    const SharedLog& shared, std::span<const processors::machine::MachineConfig* const> machines);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -7,7 +7,7 @@
 
 #include "studies/helps/change.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// The part of a machine that a resource belongs to, by which a verdict says how busy it is.
 enum class Part : std::uint8_t {
@@ -40,4 +40,4 @@ struct Resource {
   bool same_frame = false;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -9,15 +9,15 @@
 #include "studies/helps/dram_resources.h"
 #include "studies/helps/flow_resources.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
-using processors::Placement;
-using processors::Scheme;
-using processors::Sharing;
+using processors::machine::MachineConfig;
+using processors::machine::Placement;
+using processors::machine::Scheme;
+using processors::machine::Sharing;
+using processors::replay::MachineResult;
 
 void add_nodes(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
                std::vector<Resource>& resources) {
@@ -26,7 +26,7 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   // More nodes than packets have nothing to do. Nodes beside which rays move are of use without such a limit.
   const auto packets = static_cast<std::int64_t>(facts.packets / machine.clusters + 1);
   Resource nodes = more(changer, Part::nodes, "machine.nodes",
-                        std::min<std::int64_t>(packets, processors::most_nodes / machine.clusters));
+                        std::min<std::int64_t>(packets, processors::machine::most_nodes / machine.clusters));
   if (!image) {
     nodes.best.reset();
   }
@@ -101,7 +101,7 @@ void add_shared_memory(const Changer& changer, const MachineConfig& machine, con
 }
 
 void add_host(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
-  if (machine.host.assignment == processors::Assignment::dynamic) {
+  if (machine.host.assignment == processors::machine::Assignment::dynamic) {
     resources.push_back(fewer(changer, Part::host, "host.latency_cycles"));
     resources.push_back(fewer(changer, Part::host, "host.occupancy_cycles"));
   }
@@ -109,7 +109,7 @@ void add_host(const Changer& changer, const MachineConfig& machine, std::vector<
 
 // A tree that is given costs nothing to build.
 void add_building(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
-  const processors::BuildConfig& build = machine.build;
+  const processors::machine::BuildConfig& build = machine.build;
   if (build.sharing == Sharing::given) {
     return;
   }
@@ -126,7 +126,7 @@ void add_building(const Changer& changer, const MachineConfig& machine, std::vec
     return changer.with({{"build.initial_level", std::to_string(level)}});
   };
   resources.push_back({"build.initial_level", Part::building, at_level(1), given});
-  if (build.initial == processors::InitialTree::level) {
+  if (build.initial == processors::machine::InitialTree::level) {
     resources.push_back(
         {"build.initial_level, higher", Part::building, at_level(build.level + 1), std::nullopt});
     if (build.level > 2) {
@@ -143,9 +143,10 @@ FrameFacts facts_of(const MachineResult& result) {
   facts.packets = result.packets;
   facts.pixels = result.pixels;
   facts.database_bytes = result.database_bytes;
-  facts.writes_waited = result.time()[static_cast<std::size_t>(processors::Activity::queue_full_wait)] > 0;
+  facts.writes_waited =
+      result.time()[static_cast<std::size_t>(processors::cost::Activity::queue_full_wait)] > 0;
   facts.waited_for_banks = std::any_of(
-      result.clusters.begin(), result.clusters.end(), [](const processors::ClusterResult& cluster) {
+      result.clusters.begin(), result.clusters.end(), [](const processors::replay::ClusterResult& cluster) {
         return std::any_of(cluster.banks.begin(), cluster.banks.end(),
                            [](const memory::BankStatistics& bank) { return bank.waits.sum > 0; });
       });
@@ -166,4 +167,4 @@ std::vector<Resource> resources_of(const Changer& changer, const MachineConfig& 
   return resources;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

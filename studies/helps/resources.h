@@ -7,7 +7,7 @@
 #include "processors/replay/replay.h"
 #include "studies/helps/resource.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// What the list depends on beside the machine.
 struct FrameFacts {
@@ -18,12 +18,12 @@ struct FrameFacts {
   bool waited_for_banks = true;  ///< an access has waited for its bank
 };
 
-[[nodiscard]] FrameFacts facts_of(const processors::MachineResult& result);
+[[nodiscard]] FrameFacts facts_of(const processors::replay::MachineResult& result);
 
 /// The resources that this machine has and that can be made better, in a fixed order. `changer` is of the
 /// configuration of `machine`, `facts` of the frame it was timed on.
 [[nodiscard]] std::vector<Resource> resources_of(const Changer& changer,
-                                                 const processors::MachineConfig& machine,
+                                                 const processors::machine::MachineConfig& machine,
                                                  const FrameFacts& facts);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

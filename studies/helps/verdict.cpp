@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
@@ -138,8 +138,8 @@ std::string gain_text(const Help& help) {
                      at_best(help), price_text(*help.step));
 }
 
-std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
-                    const processors::MachineResult& result, const Counts& counts) {
+std::string verdict(const WhatHelps& what, const processors::machine::MachineConfig& machine,
+                    const processors::replay::MachineResult& result, const figures::Counts& counts) {
   if (result.end == 0) {
     return "nothing: the frame takes no time on this machine";
   }
@@ -159,4 +159,4 @@ std::string verdict(const WhatHelps& what, const processors::MachineConfig& mach
   return nothing(what);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -7,7 +7,7 @@
 #include "studies/figures/figure_parts.h"
 #include "studies/helps/what_helps.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// The order of helps: the larger, the better the advice. A step that is worth naming comes before one that
 /// is not; with prices a step that raises no price comes first, by the share it saves, and behind it those
@@ -21,20 +21,22 @@ namespace marti::studies {
 
 /// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
 /// of banks the share of the frame in which they are busy, if that is more.
-[[nodiscard]] double share_of(Part part, const Counts& counts);
+[[nodiscard]] double share_of(Part part, const figures::Counts& counts);
 
 /// How busy a resource is, a share of the frame; of packets how long nodes are idle. Where rays move, a node
 /// may wait for what is slow elsewhere, so there it is how busy the stage, the busiest node, the host or the
 /// network is; else share_of() its part.
-[[nodiscard]] double busy_share(const Help& help, const processors::MachineConfig& machine,
-                                const processors::MachineResult& result, const Counts& counts);
+[[nodiscard]] double busy_share(const Help& help, const processors::machine::MachineConfig& machine,
+                                const processors::replay::MachineResult& result,
+                                const figures::Counts& counts);
 
 /// Why the part matters: how busy it is, or what share of the nodes' time it takes.
-[[nodiscard]] std::string why(const Help& help, const processors::MachineConfig& machine,
-                              const processors::MachineResult& result, const Counts& counts);
+[[nodiscard]] std::string why(const Help& help, const processors::machine::MachineConfig& machine,
+                              const processors::replay::MachineResult& result, const figures::Counts& counts);
 
 /// The sentence of `what`, without a full stop.
-[[nodiscard]] std::string verdict(const WhatHelps& what, const processors::MachineConfig& machine,
-                                  const processors::MachineResult& result, const Counts& counts);
+[[nodiscard]] std::string verdict(const WhatHelps& what, const processors::machine::MachineConfig& machine,
+                                  const processors::replay::MachineResult& result,
+                                  const figures::Counts& counts);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -12,7 +12,7 @@
 #include "studies/helps/resource.h"
 #include "studies/keys/price_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 /// A gain of this share of the frame is worth naming.
 inline constexpr double worth_naming = 0.005;
@@ -75,9 +75,9 @@ struct WhatHelps {
 
 /// Measures what helps the machine of `config`, which was timed on the work log with `result`, by replays
 /// that take about `budget` together.
-[[nodiscard]] WhatHelps what_helps(const sim::Config& config, const std::optional<Prices>& prices,
-                                   const processors::MachineConfig& machine,
-                                   const processors::MachineResult& result, const SharedLog& shared,
+[[nodiscard]] WhatHelps what_helps(const sim::Config& config, const std::optional<keys::Prices>& prices,
+                                   const processors::machine::MachineConfig& machine,
+                                   const processors::replay::MachineResult& result, const SharedLog& shared,
                                    Work budget = unlimited_work);
 
 /// How much faster the machine gets: the frame time before, divided by that after, minus 1. std::nullopt for
@@ -104,4 +104,4 @@ struct Unreplayed {
 /// of the machine changes, as with smaller packets.
 [[nodiscard]] std::string gain_text(const Help& help);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -10,46 +10,46 @@
 #include "studies/figures/flow_figures.h"
 #include "studies/helps/verdict.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
-double figure(const Counts& counts, std::string_view name) {
-  return figure_of({&counts}, name).value_or(0.0);
+double figure(const figures::Counts& counts, std::string_view name) {
+  return figures::figure_of({&counts}, name).value_or(0.0);
 }
 
 // These activities' share of all nodes' time.
-double share(const Counts& counts, std::initializer_list<Activity> activities) {
+double share(const figures::Counts& counts, std::initializer_list<Activity> activities) {
   double sum = 0.0;
   for (const Activity activity : activities) {
-    const std::string_view name = processors::activity_names[static_cast<std::size_t>(activity)];
+    const std::string_view name = processors::cost::activity_names[static_cast<std::size_t>(activity)];
     sum += figure(counts, "share_" + std::string(name));
   }
   return sum;
 }
 
-double percent(const Counts& counts, Activity activity) { return 100.0 * share(counts, {activity}); }
+double percent(const figures::Counts& counts, Activity activity) { return 100.0 * share(counts, {activity}); }
 
-double computing(const Counts& counts) {
+double computing(const figures::Counts& counts) {
   return share(counts, {Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
                         Activity::cache_access, Activity::switching, Activity::messaging});
 }
 
-double start_up(const Counts& counts) {
+double start_up(const figures::Counts& counts) {
   return figure(counts, "build_start_up_wait") / (figure(counts, "end") * figure(counts, "nodes"));
 }
 
-double on_memory(const Counts& counts) {
+double on_memory(const figures::Counts& counts) {
   return share(counts,
                {Activity::interconnect_wait, Activity::transfer, Activity::bank_wait, Activity::bank_access});
 }
 
 // What nodes do most while they do not compute, if that takes more of their time.
-std::string more_than_computing(const Counts& counts) {
+std::string more_than_computing(const figures::Counts& counts) {
   const std::initializer_list<std::pair<double, std::string_view>> waits = {
       {share(counts, {Activity::idle}), "idle"},
       {share(counts, {Activity::dispatch_wait}) - start_up(counts), "waiting for packets"},
@@ -64,9 +64,9 @@ std::string more_than_computing(const Counts& counts) {
 }
 
 std::string why_nodes(const std::string& name, const MachineConfig& machine, const MachineResult& result,
-                      const Counts& counts) {
-  if (machine.scheme == processors::Scheme::pipeline) {
-    for (const StageLoad& stage : flow_figures(machine, result).stages) {
+                      const figures::Counts& counts) {
+  if (machine.scheme == processors::machine::Scheme::pipeline) {
+    for (const figures::StageLoad& stage : figures::flow_figures(machine, result).stages) {
       if (name == "pipeline." + stage.name) {
         return fmt::format("the nodes of this stage are {:.1f} % busy", 100.0 * stage.busy);
       }
@@ -80,32 +80,33 @@ std::string why_nodes(const std::string& name, const MachineConfig& machine, con
   return text;
 }
 
-std::string why_network(const MachineConfig& machine, const Counts& counts) {
-  const std::optional<double> busy =
-      figure_of({&counts}, machine.scheme == processors::Scheme::image ? "interconnect_utilisation"
-                                                                       : "network_utilisation");
+std::string why_network(const MachineConfig& machine, const figures::Counts& counts) {
+  const std::optional<double> busy = figures::figure_of(
+      {&counts}, machine.scheme == processors::machine::Scheme::image ? "interconnect_utilisation"
+                                                                      : "network_utilisation");
   return busy ? fmt::format("the network's links are {:.1f} % busy", 100.0 * *busy)
               : std::string("every message takes its latency");
 }
 
-std::string why_host(const MachineConfig& machine, const MachineResult& result, const Counts& counts) {
-  if (machine.scheme != processors::Scheme::image) {
+std::string why_host(const MachineConfig& machine, const MachineResult& result,
+                     const figures::Counts& counts) {
+  if (machine.scheme != processors::machine::Scheme::image) {
     return fmt::format("camera rays keep the host busy for {:.1f} % of the time",
-                       100.0 * flow_figures(machine, result).host);
+                       100.0 * figures::flow_figures(machine, result).host);
   }
   return fmt::format("nodes spend {:.1f} % of their time waiting for packets",
                      percent(counts, Activity::dispatch_wait));
 }
 
 std::string why_regions(const MachineConfig& machine, const MachineResult& result) {
-  const StageLoad all = flow_figures(machine, result).all;
+  const figures::StageLoad all = figures::flow_figures(machine, result).all;
   return fmt::format("the busiest node is {:.1f} % busy, a node on average {:.1f} %", 100.0 * all.busiest,
                      100.0 * all.busy);
 }
 
 }  // namespace
 
-double share_of(Part part, const Counts& counts) {
+double share_of(Part part, const figures::Counts& counts) {
   switch (part) {
     case Part::nodes:
       return computing(counts);
@@ -136,14 +137,14 @@ double share_of(Part part, const Counts& counts) {
 }
 
 double busy_share(const Help& help, const MachineConfig& machine, const MachineResult& result,
-                  const Counts& counts) {
-  if (machine.scheme == processors::Scheme::image) {
+                  const figures::Counts& counts) {
+  if (machine.scheme == processors::machine::Scheme::image) {
     return help.name.starts_with("packets.") ? share(counts, {Activity::idle}) : share_of(help.part, counts);
   }
-  const FlowFigures flow = flow_figures(machine, result);
+  const figures::FlowFigures flow = figures::flow_figures(machine, result);
   switch (help.part) {
     case Part::nodes:
-      for (const StageLoad& stage : flow.stages) {
+      for (const figures::StageLoad& stage : flow.stages) {
         if (help.name == "pipeline." + stage.name) {
           return stage.busiest;
         }
@@ -163,7 +164,7 @@ double busy_share(const Help& help, const MachineConfig& machine, const MachineR
 }
 
 std::string why(const Help& help, const MachineConfig& machine, const MachineResult& result,
-                const Counts& counts) {
+                const figures::Counts& counts) {
   switch (help.part) {
     case Part::nodes:
       return why_nodes(help.name, machine, result, counts);
@@ -173,8 +174,8 @@ std::string why(const Help& help, const MachineConfig& machine, const MachineRes
     case Part::local_memory:
       return fmt::format("nodes spend {:.1f} % of their time on memory", 100.0 * on_memory(counts));
     case Part::interconnect:
-      if (const std::optional<double> busy = figure_of({&counts}, "interconnect_utilisation")) {
-        return fmt::format("the {} is {:.1f} % busy", interconnect_name(machine), 100.0 * *busy);
+      if (const std::optional<double> busy = figures::figure_of({&counts}, "interconnect_utilisation")) {
+        return fmt::format("the {} is {:.1f} % busy", figures::interconnect_name(machine), 100.0 * *busy);
       }
       return fmt::format("nodes spend {:.1f} % of their time on transfers",
                          percent(counts, Activity::transfer));
@@ -199,4 +200,4 @@ std::string why(const Help& help, const MachineConfig& machine, const MachineRes
   return why_regions(machine, result);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

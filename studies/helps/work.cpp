@@ -1,6 +1,6 @@
 #include "studies/helps/work.h"
 
-namespace marti::studies {
+namespace marti::studies::helps {
 
 namespace {
 
@@ -11,23 +11,25 @@ constexpr Work stripped_reference = 10;
 constexpr Work stripping_of_a_reference = 4;
 constexpr Work event = 80;
 
-Work references_of(const processors::MachineResult& result) {
+Work references_of(const processors::replay::MachineResult& result) {
   return static_cast<Work>(result.references().references());
 }
 
 }  // namespace
 
-Work replay_work(const processors::MachineResult& result, const processors::StrippedLog* stripped) {
+Work replay_work(const processors::replay::MachineResult& result,
+                 const processors::walk::StrippedLog* stripped) {
   const Work walking = stripped != nullptr ? stripped_reference * stripped->references()
                                            : walked_reference * references_of(result);
   return walking + event * result.events;
 }
 
-Work run_work(const processors::LogTotals& totals, const processors::MachineResult& machine,
-              const processors::MachineResult& one_node, const processors::StrippedLog* stripped) {
+Work run_work(const processors::program::LogTotals& totals, const processors::replay::MachineResult& machine,
+              const processors::replay::MachineResult& one_node,
+              const processors::walk::StrippedLog* stripped) {
   const Work stripping = stripped != nullptr ? stripping_of_a_reference * references_of(machine) : 0;
   return traced_step * totals.all_steps() + stripping + replay_work(machine, stripped) +
          replay_work(one_node, stripped);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::helps

@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 /// Nanoseconds by `clock`. Throws InternalError where there is no such clock.
 [[nodiscard]] inline std::int64_t clock_nanoseconds(clockid_t clock) {
@@ -30,4 +30,4 @@ namespace marti::studies {
   return 1e-9 * static_cast<double>(thread_cpu_nanoseconds());
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 namespace {
 
@@ -79,4 +79,4 @@ void limit_threads_to_available() {
   start_pool(threads);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

@@ -9,7 +9,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 namespace {
 
@@ -119,9 +119,9 @@ class OpenImageIO final : public ImageCodec {
 
 }  // namespace
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host
 
-const marti::studies::ImageCodec* marti_image_codec() {
-  static const marti::studies::OpenImageIO codec;
+const marti::studies::host::ImageCodec* marti_image_codec() {
+  static const marti::studies::host::OpenImageIO codec;
   return &codec;
 }

@@ -12,7 +12,7 @@
 
 #include "scenes/texture.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 /// The pixels of an image file: 8-bit samples, interleaved, rows from the top.
 struct DecodedImage {
@@ -48,7 +48,7 @@ class ImageCodec {
   [[nodiscard]] virtual std::vector<std::byte> encode_png(const scenes::Texture& texture) const = 0;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host
 
 /// The one function that marti_image_codec.so exports.
-extern "C" const marti::studies::ImageCodec* marti_image_codec();
+extern "C" const marti::studies::host::ImageCodec* marti_image_codec();

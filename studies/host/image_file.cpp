@@ -13,7 +13,7 @@
 #include "sim/error.h"
 #include "studies/host/image_codec.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 namespace {
 
@@ -58,7 +58,7 @@ std::uint8_t srgb_byte(float linear) {
 
 void load_image_library() { static_cast<void>(codec()); }
 
-std::string note_of_infinities(const processors::Image& image) {
+std::string note_of_infinities(const processors::program::Image& image) {
   const auto count = std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& pixel) {
     return !std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z);
   });
@@ -68,7 +68,7 @@ std::string note_of_infinities(const processors::Image& image) {
                           "than 32-bit floats can hold; image.png has them white or black.";
 }
 
-void write_exr(const processors::Image& image, const std::filesystem::path& file) {
+void write_exr(const processors::program::Image& image, const std::filesystem::path& file) {
   const std::array<std::string, 3> names = {"R", "G", "B"};
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
   const std::span samples(reinterpret_cast<const float*>(image.pixels.data()),
@@ -88,7 +88,7 @@ void write_channels(std::uint32_t width, std::uint32_t height, std::span<const s
   codec().write_exr(file.string(), {width, height}, names, samples);
 }
 
-void write_png(const processors::Image& image, const std::filesystem::path& file) {
+void write_png(const processors::program::Image& image, const std::filesystem::path& file) {
   std::vector<std::uint8_t> samples;
   samples.reserve(image.pixels.size() * 3);
   for (const glm::vec3& pixel : image.pixels) {
@@ -111,4 +111,4 @@ scenes::ImageSize size_of_image(std::span<const std::byte> file, std::string_vie
 
 std::vector<std::byte> encode_png(const scenes::Texture& texture) { return codec().encode_png(texture); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

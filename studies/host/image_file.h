@@ -13,7 +13,7 @@
 #include "scenes/scene.h"
 #include "scenes/texture.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 /// Loads OpenImageIO now, so that a long run that will write images fails at its begin if that cannot be
 /// loaded. Throws UserError.
@@ -21,11 +21,11 @@ void load_image_library();
 
 /// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal
 /// files. Throws UserError when the file cannot be written.
-void write_exr(const processors::Image& image, const std::filesystem::path& file);
+void write_exr(const processors::program::Image& image, const std::filesystem::path& file);
 
 /// "3 of 256 pixels ...": how many have a channel that is infinite or NaN, which an EXR file holds unchanged
 /// and a PNG file as its brightest or darkest value; empty when no pixel has one.
-[[nodiscard]] std::string note_of_infinities(const processors::Image& image);
+[[nodiscard]] std::string note_of_infinities(const processors::program::Image& image);
 
 /// Writes an OpenEXR of 32-bit float channels, each with a name and width * height figures.
 void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
@@ -33,7 +33,7 @@ void write_channels(std::uint32_t width, std::uint32_t height, std::span<const s
 
 /// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError when the file cannot be
 /// written.
-void write_png(const processors::Image& image, const std::filesystem::path& file);
+void write_png(const processors::program::Image& image, const std::filesystem::path& file);
 
 /// A scenes::ImageDecoder. Reads PNG and JPEG; refuses more than 65,536 pixels a side or 2^28 in all.
 [[nodiscard]] scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name);
@@ -44,4 +44,4 @@ void write_png(const processors::Image& image, const std::filesystem::path& file
 /// A scenes::ImageEncoder: PNG.
 [[nodiscard]] std::vector<std::byte> encode_png(const scenes::Texture& texture);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

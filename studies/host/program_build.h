@@ -3,10 +3,10 @@
 
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 /// "marti VERSION DIGITS"; the digits are a hash of all sources that decide a result (every folder but
 /// studies/), so that a program that was changed is another one even when its version is the same.
 [[nodiscard]] std::string_view build_of_program();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

@@ -8,7 +8,7 @@
 
 #include "sim/files.h"
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 namespace {
 
@@ -83,4 +83,4 @@ AtSignal::~AtSignal() {
   action() = {};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

@@ -5,7 +5,7 @@
 #include <functional>
 #include <mutex>
 
-namespace marti::studies {
+namespace marti::studies::host {
 
 /// To be called by main() before it starts any thread. From then on SIGINT, SIGTERM and SIGHUP, unless they
 /// are ignored, still end the program, but first the temporary files of unfinished output are removed; and
@@ -36,4 +36,4 @@ class AtSignal {
   AtSignal& operator=(const AtSignal&) = delete;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::host

@@ -6,13 +6,13 @@
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::BuildConfig;
-using processors::InitialTree;
-using processors::Sharing;
+using processors::machine::BuildConfig;
+using processors::machine::InitialTree;
+using processors::machine::Sharing;
 
 // "full", "rule" or a level, which is written as a text too, so that the key has one type.
 void read_initial_level(const sim::Config& config, BuildConfig& build) {
@@ -50,7 +50,8 @@ void read_initial_tree(sim::Config& config, BuildConfig& build) {
 void declare_build_keys(sim::Schema& schema) {
   schema.section("build", "how the machine gets its tree");
   schema.choice(
-      "build.sharing", "given", {processors::sharing_names.begin(), processors::sharing_names.end()},
+      "build.sharing", "given",
+      {processors::machine::sharing_names.begin(), processors::machine::sharing_names.end()},
       "given: the whole tree is there and costs nothing; none: it is built before the frame, and paid; "
       "shared: an initial tree is built before the frame, and each node below it by the processor "
       "node that needs it first, while others wait; private: each processor node builds what it needs below "
@@ -106,4 +107,4 @@ BuildConfig read_dynamic_build(sim::Config& config) {
   return build;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -8,15 +8,16 @@
 #include "sim/config_errors.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 void declare_second_level_keys(sim::Schema& schema) {
   schema.section("l2", "a second level of caches; its line is the first level's");
-  schema.choice("l2.sharing", "none",
-                {processors::second_level_names.begin(), processors::second_level_names.end()},
-                "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
-                "before the "
-                "banks of its memory");
+  schema.choice(
+      "l2.sharing", "none",
+      {processors::machine::second_level_names.begin(), processors::machine::second_level_names.end()},
+      "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
+      "before the "
+      "banks of its memory");
   schema.size("l2.size", "256 KiB", {"1 B", "4 GiB"}, "size of each second-level cache");
   schema.integer("l2.ways", 8, {0, std::numeric_limits<std::int32_t>::max()}, "",
                  "lines of a set; 0: fully associative");
@@ -28,9 +29,9 @@ void declare_second_level_keys(sim::Schema& schema) {
          "cycles of a look-up that hits: private: of the node's clock; shared: of memory.clock");
 }
 
-void read_second_level(sim::Config& config, processors::MachineConfig& machine) {
-  using processors::SecondLevel;
-  processors::SecondLevelConfig& l2 = machine.l2;
+void read_second_level(sim::Config& config, processors::machine::MachineConfig& machine) {
+  using processors::machine::SecondLevel;
+  processors::machine::SecondLevelConfig& l2 = machine.l2;
   l2.sharing = config.choice_as<SecondLevel>("l2.sharing");
   if (l2.sharing == SecondLevel::none) {
     config.mark_unused_reason("l2", "it has no effect with l2.sharing = \"none\"", "l2.sharing");
@@ -44,7 +45,7 @@ void read_second_level(sim::Config& config, processors::MachineConfig& machine) 
     l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));
   }
   config.mark_unused_reason("l2.seed", "only l2.replacement = \"random\" draws numbers", "l2.replacement");
-  sim::with_places(config, [&] { processors::check_second_level(machine); });
+  sim::with_places(config, [&] { processors::machine::check_second_level(machine); });
 }
 
 void declare_count_keys(sim::Schema& schema) {
@@ -61,13 +62,13 @@ void declare_count_keys(sim::Schema& schema) {
                  "pass over the references of each node");
 }
 
-void read_count(sim::Config& config, processors::MachineConfig& machine) {
+void read_count(sim::Config& config, processors::machine::MachineConfig& machine) {
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
                    config.boolean("count.attribution"), config.boolean("count.working_set")};
   sim::with_places(config, [&] {
-    processors::check_counting(machine);
-    processors::check_working_set(machine);
+    processors::machine::check_counting(machine);
+    processors::passes::check_working_set(machine);
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

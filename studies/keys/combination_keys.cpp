@@ -8,13 +8,13 @@
 #include "processors/machine/combinations.h"
 #include "sim/config_errors.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::Feature;
-using processors::MachineConfig;
-using processors::RefusedPair;
+using processors::machine::Feature;
+using processors::machine::MachineConfig;
+using processors::machine::RefusedPair;
 
 // The keys of which a value other than the default asks for the feature.
 std::vector<std::string_view> keys_of(Feature feature) {
@@ -46,12 +46,12 @@ MachineConfig features_of(const sim::Config& given) {
   machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
   machine.prefetch.next_line = config.boolean("prefetch.next_line");
   machine.prefetch.children = config.boolean("prefetch.children");
-  machine.build.sharing = config.choice_as<processors::Sharing>("build.sharing");
-  machine.placement = config.choice_as<processors::Placement>("database.placement");
-  machine.l2.sharing = config.choice_as<processors::SecondLevel>("l2.sharing");
+  machine.build.sharing = config.choice_as<processors::machine::Sharing>("build.sharing");
+  machine.placement = config.choice_as<processors::machine::Placement>("database.placement");
+  machine.l2.sharing = config.choice_as<processors::machine::SecondLevel>("l2.sharing");
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
                    config.boolean("count.attribution")};
-  machine.scheme = config.choice_as<processors::Scheme>("machine.scheme");
+  machine.scheme = config.choice_as<processors::machine::Scheme>("machine.scheme");
   return machine;
 }
 
@@ -71,14 +71,15 @@ void switch_off(sim::Config& config, Feature off, const std::string& place) {
 }  // namespace
 
 void settle_combinations(sim::Config& config) {
-  for (const RefusedPair& pair : processors::refused_pairs()) {
+  for (const RefusedPair& pair : processors::machine::refused_pairs()) {
     const bool another_scheme = pair.second == Feature::moving_rays && is_assigned(config, pair.second);
-    if (another_scheme && !is_assigned(config, pair.first) && is_refused(features_of(config), pair)) {
+    if (another_scheme && !is_assigned(config, pair.first) &&
+        processors::machine::is_refused(features_of(config), pair)) {
       switch_off(config, pair.first, config.where("machine.scheme"));
     }
   }
   const MachineConfig machine = features_of(config);
-  sim::with_places(config, [&] { processors::check_combinations(machine); });
+  sim::with_places(config, [&] { processors::machine::check_combinations(machine); });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -3,7 +3,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// To be called before the machine is read. Where an assignment (--set) asks for a scheme in which rays move,
 /// features of the file that are for packets only get their defaults, as if the assignment had set them too:
@@ -11,4 +11,4 @@ namespace marti::studies {
 /// features remain that do not combine.
 void settle_combinations(sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

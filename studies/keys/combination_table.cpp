@@ -2,14 +2,14 @@
 
 #include "processors/machine/combinations.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::Feature;
-using processors::feature_texts;
-using processors::features;
-using processors::RefusedPair;
+using processors::machine::Feature;
+using processors::machine::feature_texts;
+using processors::machine::features;
+using processors::machine::RefusedPair;
 
 std::string name_of(Feature feature) {
   return std::string(feature_texts[static_cast<std::size_t>(feature)].name);
@@ -17,7 +17,7 @@ std::string name_of(Feature feature) {
 
 // "yes", or the number of the pair that is refused, from 1.
 std::string cell_of(Feature one, Feature other) {
-  const auto pairs = processors::refused_pairs();
+  const auto pairs = processors::machine::refused_pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const RefusedPair& pair = pairs[i];
     if ((pair.first == one && pair.second == other) || (pair.first == other && pair.second == one)) {
@@ -51,7 +51,7 @@ std::string combinations_as_markdown() {
   }
   text += "\n";
   std::size_t number = 0;
-  for (const RefusedPair& pair : processors::refused_pairs()) {
+  for (const RefusedPair& pair : processors::machine::refused_pairs()) {
     text += std::to_string(++number) + ". " + name_of(pair.first) +
             (pair.setting.empty() ? "" : " (only " + std::string(pair.setting) + ")") + ", " +
             name_of(pair.second) + ": " + std::string(pair.reason) + ".\n";
@@ -59,4 +59,4 @@ std::string combinations_as_markdown() {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -9,7 +9,7 @@
 #include "sim/error.h"
 #include "sim/nearest.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
@@ -74,4 +74,4 @@ void require_config_file(const fs::path& file) {
       (file.is_relative() ? "; the current directory is " + fs::current_path(error).string() : ""));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -4,19 +4,19 @@
 
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.cache.organisation == processors::CacheOrganisation::none) {
+void read_prefetch(sim::Config& config, processors::machine::MachineConfig& machine) {
+  if (machine.cache.organisation == processors::machine::CacheOrganisation::none) {
     config.mark_unused_reason("prefetch", "without a cache there is nowhere to put a line",
                               "cache.organisation");
-  } else if (machine.placement == processors::Placement::replicated) {
+  } else if (machine.placement == processors::machine::Placement::replicated) {
     config.mark_unused_reason("prefetch", "a node whose own memory has the whole database does not prefetch",
                               "database.placement");
   } else {
-    processors::PrefetchConfig& prefetch = machine.prefetch;
+    processors::machine::PrefetchConfig& prefetch = machine.prefetch;
     prefetch.next_line = config.boolean("prefetch.next_line");
     prefetch.children = config.boolean("prefetch.children");
     const std::string& structure = config.choice_name("structure.kind");
@@ -37,7 +37,7 @@ void read_prefetch(sim::Config& config, processors::MachineConfig& machine) {
 }  // namespace
 
 void declare_context_keys(sim::Schema& schema) {
-  schema.integer("node.contexts", 1, {1, processors::most_contexts}, "",
+  schema.integer("node.contexts", 1, {1, processors::machine::most_contexts}, "",
                  "packets a node works on by turns: on a miss it takes up the next one that can go on");
   cycles(schema, "node.switch_cycles", 1, "cycles to take up another context");
 }
@@ -51,11 +51,11 @@ void declare_prefetch_keys(sim::Schema& schema) {
       "of the same kind of record, if it is not there");
   schema.boolean("prefetch.children", false,
                  "a visit to a branch also fetches the records of its children that are not there");
-  schema.integer("prefetch.outstanding", 4, {1, processors::most_contexts}, "",
+  schema.integer("prefetch.outstanding", 4, {1, processors::machine::most_contexts}, "",
                  "most prefetches a node has under way; further ones are dropped");
 }
 
-void read_contexts(sim::Config& config, processors::MachineConfig& machine) {
+void read_contexts(sim::Config& config, processors::machine::MachineConfig& machine) {
   machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
   if (machine.contexts > 1) {
     machine.switch_cycles = config.integer("node.switch_cycles");
@@ -63,9 +63,9 @@ void read_contexts(sim::Config& config, processors::MachineConfig& machine) {
   config.mark_unused_reason("node.switch_cycles", "a node with one context has no other to take up",
                             "node.contexts");
   read_prefetch(config, machine);
-  if (std::uint64_t{machine.all_nodes()} * machine.ports_of_node() > processors::most_ports) {
+  if (std::uint64_t{machine.all_nodes()} * machine.ports_of_node() > processors::machine::most_ports) {
     config.fail("node.contexts", "nodes times contexts and prefetches under way must be at most 2^28");
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,7 +5,7 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// Declares these keys of section `node`.
 void declare_context_keys(sim::Schema& schema);
@@ -14,6 +14,6 @@ void declare_prefetch_keys(sim::Schema& schema);
 
 /// Reads both sections into a machine whose cache, placement and building have been read, and marks keys
 /// without effect. Throws UserError naming file, line and key.
-void read_contexts(sim::Config& config, processors::MachineConfig& machine);
+void read_contexts(sim::Config& config, processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -12,7 +12,7 @@
 #include "sim/error.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
@@ -149,7 +149,7 @@ void declare_dram_keys(sim::Schema& schema) {
   }
 }
 
-void read_memory(sim::Config& config, processors::MachineConfig& machine) {
+void read_memory(sim::Config& config, processors::machine::MachineConfig& machine) {
   if (config.choice_as<Model>("memory.model") == Model::fixed) {
     machine.banks.count = count(config, "memory.banks");
     machine.banks.clock = sim::Clock::from_hertz(config.frequency("memory.clock"));
@@ -161,7 +161,8 @@ void read_memory(sim::Config& config, processors::MachineConfig& machine) {
   DramConfig& dram = machine.banks.dram.emplace();
   read_preset(config, dram);
   read_controller(config, dram);
-  if (config.choice_as<processors::SecondLevel>("l2.sharing") == processors::SecondLevel::shared) {
+  if (config.choice_as<processors::machine::SecondLevel>("l2.sharing") ==
+      processors::machine::SecondLevel::shared) {
     machine.banks.clock = sim::Clock::from_hertz(config.frequency("memory.clock"));  // of that cache
   }
   config.mark_unused_reason("dram.queue", "only dram.policy = \"frfcfs\" has a queue to choose from",
@@ -171,4 +172,4 @@ void read_memory(sim::Config& config, processors::MachineConfig& machine) {
   config.mark_unused_reason("memory", "a memory of DRAM has its times and banks from [dram]", "memory.model");
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,13 +5,13 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// Declares memory.model, which belongs to the section before.
 void declare_memory_model(sim::Schema& schema);
 void declare_dram_keys(sim::Schema& schema);
 
 /// Reads the memory behind an interconnect that has one.
-void read_memory(sim::Config& config, processors::MachineConfig& machine);
+void read_memory(sim::Config& config, processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

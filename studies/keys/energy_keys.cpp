@@ -9,13 +9,13 @@
 #include "processors/energy/energy_units.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::CacheFigures;
-using processors::EnergyFigures;
-using processors::most_of_operation;
+using processors::energy::most_of_operation;
+using processors::machine::CacheFigures;
+using processors::machine::EnergyFigures;
 
 // A key that is not given, and one of -1, leave the preset's figure.
 constexpr double preset_figure = -1.0;
@@ -96,7 +96,7 @@ void declare_figure(sim::Schema& schema, std::string_view name, double most, std
 // Reads keys of figures, but not those that this machine has no use for.
 class FigureReader {
  public:
-  FigureReader(sim::Config& config, const processors::MachineConfig& machine)
+  FigureReader(sim::Config& config, const processors::machine::MachineConfig& machine)
       : config_(config), machine_(machine) {}
 
   // Sets the figure if the key says another than the preset's.
@@ -121,22 +121,22 @@ class FigureReader {
 
   [[nodiscard]] std::optional<Reason> why_unused(std::string_view name) const {
     if (name.starts_with("energy.l1_") &&
-        machine_.cache.organisation == processors::CacheOrganisation::none) {
+        machine_.cache.organisation == processors::machine::CacheOrganisation::none) {
       return Reason{"there is no cache with cache.organisation = \"none\"", "cache.organisation"};
     }
-    if (name.starts_with("energy.l2_") && machine_.l2.sharing == processors::SecondLevel::none) {
+    if (name.starts_with("energy.l2_") && machine_.l2.sharing == processors::machine::SecondLevel::none) {
       return Reason{"there is no second level with l2.sharing = \"none\"", "l2.sharing"};
     }
     if (name == "energy.context_area" && machine_.contexts == 1) {
       return Reason{"a node with one context has no other", "node.contexts"};
     }
-    const bool image = machine_.scheme == processors::Scheme::image;
-    const bool distributed = machine_.placement == processors::Placement::distributed;
+    const bool image = machine_.scheme == processors::machine::Scheme::image;
+    const bool distributed = machine_.placement == processors::machine::Placement::distributed;
     if (name == "energy.hop_length" && image && !distributed) {
       return Reason{"this machine has no network", "machine.scheme"};
     }
     if (name == "energy.interconnect_length" &&
-        (distributed || machine_.scheme == processors::Scheme::space)) {
+        (distributed || machine_.scheme == processors::machine::Scheme::space)) {
       return Reason{"this machine has a network instead",
                     distributed ? "database.placement" : "machine.scheme"};
     }
@@ -144,7 +144,7 @@ class FigureReader {
   }
 
   sim::Config& config_;
-  const processors::MachineConfig& machine_;
+  const processors::machine::MachineConfig& machine_;
 };
 
 }  // namespace
@@ -152,9 +152,9 @@ class FigureReader {
 void declare_energy_keys(sim::Schema& schema) {
   schema.section("energy",
                  "the energy of the frame, worked out from what was counted; changes no other figure");
-  schema.choice("energy.preset", "none", names(processors::energy_preset_names),
+  schema.choice("energy.preset", "none", names(processors::machine::energy_preset_names),
                 "the technology whose figures are taken (sources: energy.md); none: no energy is worked out");
-  schema.real("energy.voltage", 1.0, {0.0, processors::most_voltage}, "",
+  schema.real("energy.voltage", 1.0, {0.0, processors::energy::most_voltage}, "",
               "supply voltage by that of the preset's sources: operations, caches and wires take its square");
   for (const FigureKey& key : figure_keys) {
     declare_figure(schema, key.name, key.most, key.unit, std::string(key.meaning), "the preset's");
@@ -164,12 +164,12 @@ void declare_energy_keys(sim::Schema& schema) {
   }
 }
 
-void read_energy(sim::Config& config, processors::MachineConfig& machine) {
-  processors::EnergyConfig& energy = machine.energy;
-  energy.preset = config.choice_as<processors::EnergyPreset>("energy.preset");
+void read_energy(sim::Config& config, processors::machine::MachineConfig& machine) {
+  processors::machine::EnergyConfig& energy = machine.energy;
+  energy.preset = config.choice_as<processors::machine::EnergyPreset>("energy.preset");
   if (energy.on()) {
     energy.voltage = config.real("energy.voltage");
-    energy.figures = processors::energy_figures(energy.preset);
+    energy.figures = processors::energy::energy_figures(energy.preset);
     FigureReader reader(config, machine);
     for (const FigureKey& key : figure_keys) {
       reader.read(key.name, energy.figures.*key.member);
@@ -182,4 +182,4 @@ void read_energy(sim::Config& config, processors::MachineConfig& machine) {
                             "energy.preset");
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,12 +5,12 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 void declare_energy_keys(sim::Schema& schema);
 
 /// Sets the machine's energy: the preset's figures, with those that are given in their places. The rest of
 /// the machine must have been read.
-void read_energy(sim::Config& config, processors::MachineConfig& machine);
+void read_energy(sim::Config& config, processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -8,19 +8,19 @@
 #include "sim/error.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::PipelineConfig;
-using processors::Scheme;
+using processors::machine::PipelineConfig;
+using processors::machine::Scheme;
 
 constexpr std::array<std::pair<std::string_view, std::uint32_t PipelineConfig::*>, 3> stages = {
     {{"pipeline.search", &PipelineConfig::search},
      {"pipeline.nearest", &PipelineConfig::nearest},
      {"pipeline.shade", &PipelineConfig::shade}}};
 
-void read_messages(const sim::Config& config, processors::MessageConfig& messages) {
+void read_messages(const sim::Config& config, processors::machine::MessageConfig& messages) {
   messages.ray_bytes = static_cast<std::uint32_t>(config.size("messages.ray"));
   messages.contribution_bytes = static_cast<std::uint32_t>(config.size("messages.contribution"));
   messages.send_cycles = config.integer("messages.send_cycles");
@@ -29,7 +29,7 @@ void read_messages(const sim::Config& config, processors::MessageConfig& message
 
 // Reads the nodes of each stage; if no stage has any, the default shares are taken.
 void read_stages(const sim::Config& config, PipelineConfig& pipeline, std::uint32_t nodes) {
-  const PipelineConfig shares = processors::default_stages(nodes);
+  const PipelineConfig shares = processors::machine::default_stages(nodes);
   std::size_t given = 0;
   for (const auto& [key, member] : stages) {
     pipeline.*member = static_cast<std::uint32_t>(config.integer(key));
@@ -50,8 +50,8 @@ void read_stages(const sim::Config& config, PipelineConfig& pipeline, std::uint3
   }
 }
 
-void read_pipeline(const sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.nodes < processors::pipeline_stages) {
+void read_pipeline(const sim::Config& config, processors::machine::MachineConfig& machine) {
+  if (machine.nodes < processors::machine::pipeline_stages) {
     config.fail("machine.nodes", "a pipeline needs at least 3 nodes, one for each stage, not " +
                                      std::to_string(machine.nodes));
   }
@@ -65,8 +65,9 @@ void read_pipeline(const sim::Config& config, processors::MachineConfig& machine
   }
   pipeline.queue = static_cast<std::uint32_t>(config.integer("pipeline.queue"));
   const std::int64_t in_flight = config.integer("pipeline.in_flight");
-  if (in_flight > processors::most_in_flight(pipeline)) {
-    config.fail("pipeline.in_flight", "more than " + std::to_string(processors::most_in_flight(pipeline)) +
+  if (in_flight > processors::machine::most_in_flight(pipeline)) {
+    config.fail("pipeline.in_flight", "more than " +
+                                          std::to_string(processors::machine::most_in_flight(pipeline)) +
                                           " rays at a time could deadlock these stages and queues");
   }
   pipeline.in_flight = static_cast<std::uint32_t>(in_flight);
@@ -83,18 +84,19 @@ void declare_flow_keys(sim::Schema& schema) {
   cycles(schema, "messages.send_cycles", 0, "cycles of a node's clock to compose and send one message");
   cycles(schema, "messages.receive_cycles", 0, "cycles of a node's clock to take one message from its queue");
   schema.section("pipeline", "stages of nodes between which rays go round (machine.scheme = \"pipeline\")");
-  schema.integer(stages[0].first, 0, {0, processors::most_nodes}, "",
+  schema.integer(stages[0].first, 0, {0, processors::machine::most_nodes}, "",
                  "of each cluster's nodes, those that walk the structure to the next leaf with objects; 0 in "
                  "all three stages: 5, 9 and 2 sixteenths of the nodes");
-  schema.integer(stages[1].first, 0, {0, processors::most_nodes}, "", "those that test a leaf's objects");
-  schema.integer(stages[2].first, 0, {0, processors::most_nodes}, "",
+  schema.integer(stages[1].first, 0, {0, processors::machine::most_nodes}, "",
+                 "those that test a leaf's objects");
+  schema.integer(stages[2].first, 0, {0, processors::machine::most_nodes}, "",
                  "those that shade hit points and make rays there");
   schema.integer("pipeline.queue", 16, {1, 65536}, "", "rays that may wait before each node");
   schema.integer("pipeline.in_flight", 0, {0, std::int64_t{1} << 31U}, "",
                  "most rays in flight in each cluster; 0: as many as cannot deadlock");
 }
 
-void read_flow(sim::Config& config, processors::MachineConfig& machine) {
+void read_flow(sim::Config& config, processors::machine::MachineConfig& machine) {
   if (machine.scheme == Scheme::image) {
     config.mark_unused_reason("messages", "no messages are sent with machine.scheme = \"image\"",
                               "machine.scheme");
@@ -112,4 +114,4 @@ void read_flow(sim::Config& config, processors::MachineConfig& machine) {
                             "machine.scheme");
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,12 +5,12 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 void declare_flow_keys(sim::Schema& schema);
 
 /// Reads the keys that the machine's scheme uses and marks the others as unused. Scheme and nodes of
 /// `machine` must have been read.
-void read_flow(sim::Config& config, processors::MachineConfig& machine);
+void read_flow(sim::Config& config, processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

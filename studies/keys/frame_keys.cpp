@@ -13,7 +13,7 @@
 #include "sim/units.h"
 #include "studies/host/image_file.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
@@ -68,7 +68,7 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
 
 }  // namespace
 
-processors::RenderOptions made_small(processors::RenderOptions options, double side) {
+processors::program::RenderOptions made_small(processors::program::RenderOptions options, double side) {
   const double factor = std::min(1.0, side / std::max(options.width, options.height));
   options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
   options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
@@ -98,15 +98,15 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
   schema.choice(
-      "image.integrator", "whitted", names_of(processors::integrator_names),
+      "image.integrator", "whitted", names_of(processors::program::integrator_names),
       "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
       "scatter to each other, emissive triangles as lights, noise that more samples lessen");
-  schema.integer("image.max_depth", 5, {1, processors::max_ray_depth}, "rays",
+  schema.integer("image.max_depth", 5, {1, processors::program::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
               "whitted: a ray that contributes less than this share of its sample is not traced");
   schema.integer(
-      "image.samples", 1, {1, processors::max_samples}, "rays",
+      "image.samples", 1, {1, processors::program::max_samples}, "rays",
       "camera rays of a pixel: one through its centre, or several through jittered points of a grid");
   schema.integer("image.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of the points of several samples and of paths");
@@ -206,8 +206,8 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
   frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
   frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
-  frame.render.integrator = config.choice_as<processors::Integrator>("image.integrator");
-  const bool path = frame.render.integrator == processors::Integrator::path;
+  frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
+  const bool path = frame.render.integrator == processors::program::Integrator::path;
   frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
   config.mark_unused_reason("image.min_weight",
                             "a path ends by chance, because rays cut off would darken the image",
@@ -238,7 +238,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.memory = read_memory(config);
   give_memory(frame.memory, frame.structure_options);
   frame.open.file.memory = frame.memory;
-  frame.open.file.size_first = size_of_image;
+  frame.open.file.size_first = host::size_of_image;
   return frame;
 }
 
@@ -250,4 +250,4 @@ FrameConfig read_one_frame(sim::Config& config) {
   return frame;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

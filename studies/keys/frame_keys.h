@@ -14,7 +14,7 @@
 #include "sim/work_meter.h"
 #include "studies/run/plan/plan.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// Which frames of an animated scene.
 struct FrameRange {
@@ -35,15 +35,16 @@ struct FrameConfig {
   FrameRange frames;
   std::string structure;
   accel::StructureOptions structure_options;
-  processors::RenderOptions render;
+  processors::program::RenderOptions render;
   bool exact_too = false;           ///< with the voxel cut: render the exact image beside it
   sim::MemoryBudget memory;         ///< of scene, structure, image and work log together
-  KeptItems keep;                   ///< plan items to keep; no configuration key, as it changes no result
+  run::KeptItems keep;              ///< plan items to keep; no configuration key, as it changes no result
   sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
 };
 
 /// The options with the image made so small that its longer side has at most `side` pixels.
-[[nodiscard]] processors::RenderOptions made_small(processors::RenderOptions options, double side);
+[[nodiscard]] processors::program::RenderOptions made_small(processors::program::RenderOptions options,
+                                                            double side);
 
 void declare_frame_keys(sim::Schema& schema);
 
@@ -64,4 +65,4 @@ void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& optio
 /// Like read_frame, for a study of one frame: refuses several.
 [[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

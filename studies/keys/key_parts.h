@@ -10,7 +10,7 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// What a duration in cycles may be: enough for any ratio of latencies, and no product of two overflows.
 inline constexpr std::int64_t most_cycles = 1'000'000'000'000;
@@ -50,4 +50,4 @@ std::vector<std::string> names(const std::array<std::string_view, N>& list) {
   return {list.begin(), list.end()};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -2,13 +2,13 @@
 
 #include <cstdint>
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
-using processors::CacheOrganisation;
-using processors::MachineConfig;
-using processors::SecondLevel;
+using processors::machine::CacheOrganisation;
+using processors::machine::MachineConfig;
+using processors::machine::SecondLevel;
 
 double kib(std::uint64_t bytes) { return static_cast<double>(bytes) / 1024.0; }
 
@@ -35,8 +35,8 @@ double node_cost(const Prices& prices, const MachineConfig& machine) {
   if (machine.l2.sharing == SecondLevel::private_caches) {
     cost += prices.l2_kib * kib(machine.l2.cache.size);
   }
-  const bool network =
-      machine.scheme != processors::Scheme::image || machine.placement == processors::Placement::distributed;
+  const bool network = machine.scheme != processors::machine::Scheme::image ||
+                       machine.placement == processors::machine::Placement::distributed;
   if (network && machine.network.kind != memory::NetworkKind::ideal) {
     cost += prices.network_byte * static_cast<double>(machine.network.width);
   }
@@ -45,8 +45,8 @@ double node_cost(const Prices& prices, const MachineConfig& machine) {
 
 // The cost of a cluster's interconnect to shared memory, and of that memory.
 double memory_cost(const Prices& prices, const MachineConfig& machine) {
-  const bool shared = machine.scheme != processors::Scheme::space &&
-                      machine.placement != processors::Placement::distributed &&
+  const bool shared = machine.scheme != processors::machine::Scheme::space &&
+                      machine.placement != processors::machine::Placement::distributed &&
                       machine.interconnect.kind != memory::InterconnectKind::ideal;
   if (!shared) {
     return 0.0;
@@ -69,4 +69,4 @@ double cost_of(const Prices& prices, const MachineConfig& machine) {
   return cluster * static_cast<double>(machine.clusters);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -3,7 +3,7 @@
 
 #include "processors/machine/machine_config.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// Prices of a machine's parts, at least 0, in any unit. By default a node costs 1 and the other parts a
 /// plausible fraction of that.
@@ -20,6 +20,6 @@ struct Prices {
 
 /// The price of the whole machine: only of parts that it has. An ideal interconnect, which cannot be built,
 /// costs nothing and has no banks.
-[[nodiscard]] double cost_of(const Prices& prices, const processors::MachineConfig& machine);
+[[nodiscard]] double cost_of(const Prices& prices, const processors::machine::MachineConfig& machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

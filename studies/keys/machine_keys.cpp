@@ -24,22 +24,22 @@
 #include "studies/keys/network_keys.h"
 #include "studies/keys/space_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
 using sim::Schema;
 
-constexpr std::array<std::pair<std::string_view, std::int64_t processors::OperationCycles::*>, 8> operations =
-    {{
-        {"costs.add", &processors::OperationCycles::add},
-        {"costs.multiply", &processors::OperationCycles::multiply},
-        {"costs.divide", &processors::OperationCycles::divide},
-        {"costs.square_root", &processors::OperationCycles::square_root},
-        {"costs.compare", &processors::OperationCycles::compare},
-        {"costs.integer", &processors::OperationCycles::integer},
-        {"costs.load", &processors::OperationCycles::load},
-        {"costs.store", &processors::OperationCycles::store},
+constexpr std::array<std::pair<std::string_view, std::int64_t processors::machine::OperationCycles::*>, 8>
+    operations = {{
+        {"costs.add", &processors::machine::OperationCycles::add},
+        {"costs.multiply", &processors::machine::OperationCycles::multiply},
+        {"costs.divide", &processors::machine::OperationCycles::divide},
+        {"costs.square_root", &processors::machine::OperationCycles::square_root},
+        {"costs.compare", &processors::machine::OperationCycles::compare},
+        {"costs.integer", &processors::machine::OperationCycles::integer},
+        {"costs.load", &processors::machine::OperationCycles::load},
+        {"costs.store", &processors::machine::OperationCycles::store},
     }};
 
 constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 7> records = {{
@@ -52,18 +52,19 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutCon
     {"layout.pixel", &memory::LayoutConfig::pixel_bytes},
 }};
 
-constexpr std::array<std::string_view, processors::split_caches> split_keys = {
+constexpr std::array<std::string_view, processors::machine::split_caches> split_keys = {
     "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
 
 void declare_node(Schema& schema) {
   schema.section("machine", "how many processors work on a frame, and how they share it");
-  schema.choice("machine.scheme", "image", names(processors::scheme_names),
+  schema.choice("machine.scheme", "image", names(processors::machine::scheme_names),
                 "the parallel scheme; image: a node takes a packet of neighbouring pixels and traces it "
                 "whole; pipeline: nodes search, test or shade, and rays go round between them; space: a node "
                 "holds a part of space, and rays go to the node whose part they enter");
-  schema.integer("machine.clusters", 1, {1, processors::most_nodes}, "",
+  schema.integer("machine.clusters", 1, {1, processors::machine::most_nodes}, "",
                  "clusters, each with a copy of the database in its own shared memory");
-  schema.integer("machine.nodes", 16, {1, processors::most_nodes}, "", "processor nodes in each cluster");
+  schema.integer("machine.nodes", 16, {1, processors::machine::most_nodes}, "",
+                 "processor nodes in each cluster");
   schema.section("node",
                  "one processor node; it works in order and stalls on a miss, unless it has other contexts");
   clock(schema, "node.clock", "clock of the node and its cache");
@@ -73,7 +74,7 @@ void declare_node(Schema& schema) {
   declare_context_keys(schema);
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
   std::vector<std::string> presets;
-  for (const std::string_view preset : processors::cost_presets()) {
+  for (const std::string_view preset : processors::cost::cost_presets()) {
     presets.emplace_back(preset);
   }
   schema.choice("costs.preset", presets.back(), presets, "the processor whose operation timings are taken");
@@ -105,14 +106,15 @@ void declare_memory(Schema& schema) {
   schema.size("layout.treelet", "4 KiB", {"1 B", "1 GiB"},
               "treelets: most bytes of one, but the children of a node are never divided");
   schema.section("cache", "the private cache of a node; it holds what is read of the database");
-  schema.choice("cache.organisation", "unified", names(processors::cache_organisation_names),
+  schema.choice("cache.organisation", "unified", names(processors::machine::cache_organisation_names),
                 "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
   schema.size("cache.size", "16 KiB", {"1 B", "4 GiB"}, "size of the unified cache");
-  const std::array<std::string_view, processors::split_caches> sizes = {"4 KiB", "2 KiB", "8 KiB", "2 KiB"};
+  const std::array<std::string_view, processors::machine::split_caches> sizes = {"4 KiB", "2 KiB", "8 KiB",
+                                                                                 "2 KiB"};
   for (std::size_t i = 0; i < split_keys.size(); ++i) {
-    schema.size(
-        split_keys[i], sizes[i], {"1 B", "4 GiB"},
-        "size of the split organisation's " + std::string(processors::split_cache_names[i]) + " cache");
+    schema.size(split_keys[i], sizes[i], {"1 B", "4 GiB"},
+                "size of the split organisation's " + std::string(processors::machine::split_cache_names[i]) +
+                    " cache");
   }
   schema.size("cache.line", "32 B", {"1 B", "1 GiB"}, "bytes of a line; a power of two");
   schema.integer("cache.ways", 4, {0, std::numeric_limits<std::int32_t>::max()}, "",
@@ -125,7 +127,7 @@ void declare_memory(Schema& schema) {
   declare_second_level_keys(schema);
   declare_prefetch_keys(schema);
   schema.section("database", "where the scene database is");
-  schema.choice("database.placement", "shared", names(processors::placement_names),
+  schema.choice("database.placement", "shared", names(processors::machine::placement_names),
                 "shared: one copy in each cluster's memory; replicated: a copy in every node's own memory; "
                 "distributed: one copy in each cluster, spread with the frame buffer over its nodes' own "
                 "memories and reached over their network");
@@ -176,10 +178,11 @@ void declare_host(Schema& schema) {
   schema.section("packets", "the rectangles of pixels that are handed out");
   schema.integer("packets.width", 8, {1, 65536}, "pixels", "columns of a packet");
   schema.integer("packets.height", 8, {1, 65536}, "pixels", "rows of a packet");
-  schema.choice("packets.order", "scanline", names(processors::packet_order_names), "order of handing out");
+  schema.choice("packets.order", "scanline", names(processors::machine::packet_order_names),
+                "order of handing out");
   schema.section("host", "the processor that hands packets out");
   schema.choice(
-      "host.assignment", "dynamic", names(processors::assignment_names),
+      "host.assignment", "dynamic", names(processors::machine::assignment_names),
       "dynamic: a free node asks for the next packet; interleaved: node i of n has packets i, i + n, "
       "...; blocks: each node has a run of packets");
   clock(schema, "host.clock", "clock of the host");
@@ -203,8 +206,8 @@ sim::Clock clock(const sim::Config& config, std::string_view key) {
   return sim::Clock::from_hertz(config.frequency(key));
 }
 
-void read_costs(const sim::Config& config, processors::MachineConfig& machine) {
-  machine.operations = processors::cost_preset(config.choice_name("costs.preset"));
+void read_costs(const sim::Config& config, processors::machine::MachineConfig& machine) {
+  machine.operations = processors::cost::cost_preset(config.choice_name("costs.preset"));
   for (const auto& [name, member] : operations) {
     const std::int64_t given = config.integer(name);
     if (given >= 0) {
@@ -249,8 +252,8 @@ void read_cache_size(const sim::Config& config, std::string_view key, const memo
   size = cache.size;
 }
 
-void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
-  using processors::CacheOrganisation;
+void read_cache(sim::Config& config, processors::machine::NodeCacheConfig& cache) {
+  using processors::machine::CacheOrganisation;
   cache.organisation = config.choice_as<CacheOrganisation>("cache.organisation");
   if (cache.organisation == CacheOrganisation::none) {
     config.mark_unused_reason("cache", "it has no effect with cache.organisation = \"none\"",
@@ -281,8 +284,8 @@ void read_cache(sim::Config& config, processors::NodeCacheConfig& cache) {
   }
 }
 
-void read_distribution(const sim::Config& config, processors::MachineConfig& machine) {
-  processors::DistributionConfig& distribution = machine.distribution;
+void read_distribution(const sim::Config& config, processors::machine::MachineConfig& machine) {
+  processors::machine::DistributionConfig& distribution = machine.distribution;
   const std::uint32_t unit = machine.reference_bytes();
   distribution.interleave = unit;
   if (config.size("database.interleave") != 0) {
@@ -295,13 +298,13 @@ void read_distribution(const sim::Config& config, processors::MachineConfig& mac
   distribution.header_bytes = static_cast<std::uint32_t>(config.size("database.header"));
 }
 
-void read_local(sim::Config& config, processors::MachineConfig& machine) {
-  const bool space = machine.scheme == processors::Scheme::space;
+void read_local(sim::Config& config, processors::machine::MachineConfig& machine) {
+  const bool space = machine.scheme == processors::machine::Scheme::space;
   if (!space) {
-    machine.placement = config.choice_as<processors::Placement>("database.placement");
+    machine.placement = config.choice_as<processors::machine::Placement>("database.placement");
   }
-  if (space || machine.placement != processors::Placement::shared ||
-      machine.build.sharing == processors::Sharing::private_trees) {
+  if (space || machine.placement != processors::machine::Placement::shared ||
+      machine.build.sharing == processors::machine::Sharing::private_trees) {
     machine.local.clock = clock(config, "local.clock");
     machine.local.width = static_cast<std::uint32_t>(config.size("local.width"));
     machine.local.access_cycles = config.integer("local.access_cycles");
@@ -312,17 +315,17 @@ void read_local(sim::Config& config, processors::MachineConfig& machine) {
       "it has no effect without database.placement = \"replicated\" or \"distributed\", build.sharing = "
       "\"private\" or machine.scheme = \"space\"",
       "database.placement");
-  if (machine.placement == processors::Placement::distributed) {
+  if (machine.placement == processors::machine::Placement::distributed) {
     read_distribution(config, machine);
   }
   config.mark_unused_reason("database", "it has no effect without database.placement = \"distributed\"",
                             "database.placement");
 }
 
-void read_interconnect(sim::Config& config, processors::MachineConfig& machine) {
+void read_interconnect(sim::Config& config, processors::machine::MachineConfig& machine) {
   memory::InterconnectConfig& interconnect = machine.interconnect;
   machine.banks.interleave = machine.reference_bytes();
-  if (machine.placement == processors::Placement::distributed) {
+  if (machine.placement == processors::machine::Placement::distributed) {
     const std::string_view reason =
         "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
     config.mark_unused_reason("interconnect", reason, "database.placement");
@@ -346,7 +349,7 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
     interconnect.cycles_per_beat = config.integer("interconnect.cycles_per_beat");
     read_memory(config, machine);
     // Banks of DRAM are mapped by dram.mapping, so there it only says what one reference reads.
-    const bool cached = machine.cache.organisation != processors::CacheOrganisation::none;
+    const bool cached = machine.cache.organisation != processors::machine::CacheOrganisation::none;
     if ((!machine.banks.dram || !cached) && config.size("memory.interleave") != 0) {
       machine.banks.interleave = power_of_two(config, "memory.interleave");
     }
@@ -360,9 +363,9 @@ void read_interconnect(sim::Config& config, processors::MachineConfig& machine) 
 }
 
 // Messages are sent where rays move from node to node, and for a distributed database.
-void read_network_if_used(sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.scheme != processors::Scheme::image ||
-      machine.placement == processors::Placement::distributed) {
+void read_network_if_used(sim::Config& config, processors::machine::MachineConfig& machine) {
+  if (machine.scheme != processors::machine::Scheme::image ||
+      machine.placement == processors::machine::Placement::distributed) {
     machine.network = read_network(config);
     return;
   }
@@ -387,18 +390,18 @@ void declare_machine_keys(sim::Schema& schema) {
   declare_energy_keys(schema);
 }
 
-processors::MachineConfig read_machine(sim::Config& config) {
+processors::machine::MachineConfig read_machine(sim::Config& config) {
   settle_combinations(config);
-  processors::MachineConfig machine;
-  machine.scheme = config.choice_as<processors::Scheme>("machine.scheme");
+  processors::machine::MachineConfig machine;
+  machine.scheme = config.choice_as<processors::machine::Scheme>("machine.scheme");
   machine.clusters = count(config, "machine.clusters");
   machine.nodes = count(config, "machine.nodes");
-  if (std::uint64_t{machine.clusters} * machine.nodes > processors::most_nodes) {
+  if (std::uint64_t{machine.clusters} * machine.nodes > processors::machine::most_nodes) {
     config.fail("machine.nodes", "clusters times nodes must be at most 2^24");
   }
   machine.clock = clock(config, "node.clock");
   machine.word_bytes = static_cast<std::uint32_t>(config.size("node.word"));
-  const bool image = machine.scheme == processors::Scheme::image;
+  const bool image = machine.scheme == processors::machine::Scheme::image;
   if (image) {
     machine.write_buffer = count(config, "node.write_buffer");
   }
@@ -408,7 +411,7 @@ processors::MachineConfig read_machine(sim::Config& config) {
   machine.build = read_build(config);
   read_local(config, machine);
   read_contexts(config, machine);
-  if (machine.scheme != processors::Scheme::space) {
+  if (machine.scheme != processors::machine::Scheme::space) {
     read_interconnect(config, machine);
   }
   read_second_level(config, machine);
@@ -418,11 +421,11 @@ processors::MachineConfig read_machine(sim::Config& config) {
   read_count(config, machine);
   read_energy(config, machine);
   machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
-                     config.choice_as<processors::PacketOrder>("packets.order")};
+                     config.choice_as<processors::machine::PacketOrder>("packets.order")};
   if (image) {
-    machine.host.assignment = config.choice_as<processors::Assignment>("host.assignment");
+    machine.host.assignment = config.choice_as<processors::machine::Assignment>("host.assignment");
   }
-  if (machine.host.assignment == processors::Assignment::dynamic) {
+  if (machine.host.assignment == processors::machine::Assignment::dynamic) {
     machine.host.clock = clock(config, "host.clock");
     machine.host.latency_cycles = config.integer("host.latency_cycles");
     machine.host.occupancy_cycles = config.integer("host.occupancy_cycles");
@@ -433,11 +436,11 @@ processors::MachineConfig read_machine(sim::Config& config) {
   return machine;
 }
 
-void check_machine(const sim::Config& config, const processors::MachineConfig& machine) {
+void check_machine(const sim::Config& config, const processors::machine::MachineConfig& machine) {
   sim::with_places(config, [&] {
-    processors::check(machine);
-    processors::check_energy(machine);
+    processors::machine::check(machine);
+    processors::energy::check_energy(machine);
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,7 +5,7 @@
 
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 void declare_network_keys(sim::Schema& schema) {
   schema.section(
@@ -37,4 +37,4 @@ memory::NetworkConfig read_network(sim::Config& config) {
   return network;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -10,7 +10,7 @@
 #include "sim/config_errors.h"
 #include "sim/nearest.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::optional<Prices> read_given_prices(const sim::Config& config) {
   return given ? std::optional(read_prices(config)) : std::nullopt;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -7,7 +7,7 @@
 #include "sim/schema.h"
 #include "studies/keys/machine_cost.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// The schema must have [prices] as a free section.
 void declare_price_keys(sim::Schema& schema);
@@ -18,4 +18,4 @@ void declare_price_keys(sim::Schema& schema);
 /// As read_prices(), if any price is given; else no key is read.
 [[nodiscard]] std::optional<Prices> read_given_prices(const sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,7 +5,7 @@
 
 #include "sim/units.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 void declare_record_keys(sim::Schema& schema) {
   schema.section("record", "what `marti run` records beside the result, in the directory of -o");
@@ -45,7 +45,7 @@ RecordConfig read_record(sim::Config& config, bool has_directory) {
     }
     return record;
   }
-  TimelineOptions& options = record.timeline_options;
+  run::TimelineOptions& options = record.timeline_options;
   options.from = config.duration("record.timeline_from");
   options.most_events = config.integer("record.timeline_events");
   if (const sim::Ticks to = config.duration("record.timeline_to"); to != 0) {
@@ -58,4 +58,4 @@ RecordConfig read_record(sim::Config& config, bool has_directory) {
   return record;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -5,12 +5,12 @@
 #include "sim/schema.h"
 #include "studies/run/record/timeline.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// What is recorded; all but the critical path goes to files in the output directory.
 struct RecordConfig {
   bool timeline = false;
-  TimelineOptions timeline_options;
+  run::TimelineOptions timeline_options;
   bool heat_maps = false;
   bool critical_path = false;
 };
@@ -21,4 +21,4 @@ void declare_record_keys(sim::Schema& schema);
 /// directory to record it in.
 [[nodiscard]] RecordConfig read_record(sim::Config& config, bool has_directory);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -11,7 +11,7 @@
 #include "studies/keys/price_keys.h"
 #include "studies/keys/record_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 namespace {
 
@@ -143,7 +143,7 @@ Json config_json(const std::string& file, const std::vector<sim::EffectiveValue>
   return {{"file", file}, {"keys", keys}};
 }
 
-std::map<std::string, std::string> settings_of(const RunJson& run) {
+std::map<std::string, std::string> settings_of(const tables::RunJson& run) {
   std::map<std::string, std::string> settings;
   for (const auto& [key, setting] : run.at("config.keys").items()) {
     const auto value = setting.is_object() ? setting.find("value") : setting.end();
@@ -155,4 +155,4 @@ std::map<std::string, std::string> settings_of(const RunJson& run) {
   return settings;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

@@ -11,7 +11,7 @@
 #include "sim/config.h"
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
 /// The typed value of TOML text: a size in bytes, a frequency in Hz, a duration in ps, a percentage as a
 /// fraction, a boolean, a number, a text, or a list of these. The text without quotation marks where there is
@@ -31,6 +31,6 @@ namespace marti::studies {
 
 /// The settings in `config` of a result.json, as TOML text by key. Throws UserError, naming the file and the
 /// key, when one has no value.
-[[nodiscard]] std::map<std::string, std::string> settings_of(const RunJson& run);
+[[nodiscard]] std::map<std::string, std::string> settings_of(const tables::RunJson& run);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

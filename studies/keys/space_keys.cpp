@@ -5,15 +5,15 @@
 
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::keys {
 
-using processors::RegionPolicy;
+using processors::machine::RegionPolicy;
 
 void declare_space_keys(sim::Schema& schema) {
   schema.section("space", "parts of the scene that nodes hold (machine.scheme = \"space\")");
   schema.choice(
       "space.policy", "scatter",
-      {processors::region_policy_names.begin(), processors::region_policy_names.end()},
+      {processors::machine::region_policy_names.begin(), processors::machine::region_policy_names.end()},
       "which node holds which region; blocks: runs of neighbouring regions; scatter: region i is node i's "
       "modulo the nodes; balanced: equal numbers of primitives; sampled: equal work in a pre-pass "
       "over few pixels");
@@ -29,8 +29,8 @@ void declare_space_keys(sim::Schema& schema) {
                  "sampled: the pre-pass takes every so many columns of every so many rows");
 }
 
-void read_space(sim::Config& config, processors::MachineConfig& machine) {
-  if (machine.scheme != processors::Scheme::space) {
+void read_space(sim::Config& config, processors::machine::MachineConfig& machine) {
+  if (machine.scheme != processors::machine::Scheme::space) {
     config.mark_unused_reason("space", "it has no effect without machine.scheme = \"space\"",
                               "machine.scheme");
     return;
@@ -40,7 +40,7 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
     config.fail("machine.scheme", "\"space\" cuts a tree into regions: with structure.kind = \"" + structure +
                                       "\" there is none; use \"octree\", \"bsp\" or \"bvh\"");
   }
-  processors::SpaceConfig& space = machine.space;
+  processors::machine::SpaceConfig& space = machine.space;
   space.policy = config.choice_as<RegionPolicy>("space.policy");
   space.level = count(config, "space.level");
   space.queue = count(config, "space.queue");
@@ -57,4 +57,4 @@ void read_space(sim::Config& config, processors::MachineConfig& machine) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::keys

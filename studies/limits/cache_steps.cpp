@@ -12,11 +12,11 @@
 #include "studies/limits/step_predictor.h"
 #include "studies/limits/step_values.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 constexpr std::array<std::string_view, 2> shape_keys = {"cache.size", "cache.ways"};
 
@@ -58,7 +58,7 @@ double StepPredictor::end_with_misses(const MachineConfig& changed, double misse
   return model_->end_of(changed, work);
 }
 
-std::optional<StepPredictor::Guess> StepPredictor::cache_shape(const Resource& resource) const {
+std::optional<StepPredictor::Guess> StepPredictor::cache_shape(const helps::Resource& resource) const {
   const std::string_view key = resource.name == shape_keys[0] ? shape_keys[0] : shape_keys[1];
   const std::optional<double> from = neighbours_.number(point_, key);
   const std::optional<double> to = number_of(*resource.step);
@@ -94,7 +94,7 @@ std::optional<StepPredictor::Guess> StepPredictor::cache_shape(const Resource& r
                LimitBasis::interpolated, "interpolated: " + saving(*beyond, key)};
 }
 
-std::optional<StepPredictor::Guess> StepPredictor::cache_line(const Resource& resource) const {
+std::optional<StepPredictor::Guess> StepPredictor::cache_line(const helps::Resource& resource) const {
   constexpr std::string_view key = "cache.line";
   const auto from = static_cast<double>(machine().cache.cache.line);
   const auto to = static_cast<double>(resource.step->machine.cache.cache.line);
@@ -120,7 +120,7 @@ std::optional<StepPredictor::Guess> StepPredictor::cache_line(const Resource& re
                LimitBasis::extended, "extended: beyond " + saving(*first, key)};
 }
 
-std::optional<StepPredictor::Guess> StepPredictor::smaller_packets(const Resource& resource) const {
+std::optional<StepPredictor::Guess> StepPredictor::smaller_packets(const helps::Resource& resource) const {
   const LimitPoint& point = points_[point_];
   if (!point.one_node || figures().misses <= 0.0) {
     return std::nullopt;
@@ -138,4 +138,4 @@ std::optional<StepPredictor::Guess> StepPredictor::smaller_packets(const Resourc
                            100.0 * figures().idle / (figures().end * machine().all_nodes()))};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

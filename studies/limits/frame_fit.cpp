@@ -5,7 +5,7 @@
 #include "studies/limits/frame_model.h"
 #include "studies/limits/service_times.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -97,4 +97,4 @@ void FrameModel::find_stretch() {
   rest_ = reads > 0.0 ? wanted / reads : 1.0;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

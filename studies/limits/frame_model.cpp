@@ -5,11 +5,11 @@
 
 #include "studies/limits/service_times.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 double scaled(double time, double before, double after) {
   return before > 0.0 ? time * after / before : time;
@@ -22,9 +22,9 @@ double area(const MachineConfig& machine) {
 }  // namespace
 
 std::optional<FrameModel> FrameModel::of(const MachineConfig& machine, const PointFigures& figures) {
-  const bool described = machine.scheme == processors::Scheme::image &&
-                         machine.placement == processors::Placement::shared &&
-                         machine.build.sharing == processors::Sharing::given &&
+  const bool described = machine.scheme == processors::machine::Scheme::image &&
+                         machine.placement == processors::machine::Placement::shared &&
+                         machine.build.sharing == processors::machine::Sharing::given &&
                          machine.ports_of_node() == 1 && !machine.banks.dram;
   const double work = figures.computing + figures.cache_access + figures.delays;
   if (!described || figures.end <= 0.0 || figures.packets <= 0.0 || work <= 0.0 ||
@@ -124,4 +124,4 @@ double FrameModel::end_of(const MachineConfig& changed, const FrameWork& work) c
   return end + (reads - done) / (throughput_at(rates, after) * rest_);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -8,7 +8,7 @@
 #include "studies/limits/point_figures.h"
 #include "studies/limits/queue_model.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// What all nodes do in a frame; times in ps.
 struct FrameWork {
@@ -26,15 +26,15 @@ class FrameModel {
 
   /// std::nullopt for a frame or a machine that the model does not describe: it describes the image scheme
   /// with one shared memory a cluster, a given tree and one read outstanding a node.
-  [[nodiscard]] static std::optional<FrameModel> of(const processors::MachineConfig& machine,
+  [[nodiscard]] static std::optional<FrameModel> of(const processors::machine::MachineConfig& machine,
                                                     const PointFigures& figures);
 
   /// The work of the timed frame on a machine whose clocks and hit cycles are those of `changed`.
-  [[nodiscard]] FrameWork work_on(const processors::MachineConfig& changed) const;
+  [[nodiscard]] FrameWork work_on(const processors::machine::MachineConfig& changed) const;
 
   /// The frame time of `changed` with this work, ps. The timed machine with its own work takes the time that
   /// it took.
-  [[nodiscard]] double end_of(const processors::MachineConfig& changed, const FrameWork& work) const;
+  [[nodiscard]] double end_of(const processors::machine::MachineConfig& changed, const FrameWork& work) const;
 
  private:
   // A part of the frame in which a mean number of a cluster's nodes are at work.
@@ -50,11 +50,12 @@ class FrameModel {
     double bank_load = 1.0;
   };
 
-  FrameModel(const processors::MachineConfig& machine, const PointFigures& figures);
-  [[nodiscard]] QueueModel queues_of(const processors::MachineConfig& machine, const FrameWork& work) const;
+  FrameModel(const processors::machine::MachineConfig& machine, const PointFigures& figures);
+  [[nodiscard]] QueueModel queues_of(const processors::machine::MachineConfig& machine,
+                                     const FrameWork& work) const;
   [[nodiscard]] double cluster_reads(const FrameWork& work) const;
   // Nodes of a cluster that can have work when packets are cut into so many pieces.
-  [[nodiscard]] double customers_of(const processors::MachineConfig& machine, double pieces) const;
+  [[nodiscard]] double customers_of(const processors::machine::MachineConfig& machine, double pieces) const;
   void scale();
   void find_phases();
   // Sets the shape of the last phases so that the network reads as much as was counted, if any shape does;
@@ -62,7 +63,7 @@ class FrameModel {
   double shape_end(const std::vector<double>& throughputs);
   void find_stretch();
 
-  processors::MachineConfig machine_;
+  processors::machine::MachineConfig machine_;
   PointFigures figures_;
   FrameWork work_;
   Scales scales_;
@@ -76,4 +77,4 @@ class FrameModel {
   std::vector<double> throughputs_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -11,7 +11,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -23,36 +23,36 @@ std::string limits_line(const std::map<std::string, std::size_t>& count) {
   std::string text;
   for (const auto& [name, points] : names) {
     text += fmt::format("{}{} of {}", text.empty() ? "limits        " : ", ", name,
-                        text.empty() ? counted(points, "point") : grouped(points));
+                        text.empty() ? tables::counted(points, "point") : tables::grouped(points));
   }
   return text.empty() ? text : text + "\n";
 }
 
 }  // namespace
 
-LimitedPoints limited_points(const SweepReader& sweep, const std::optional<Prices>& prices) {
-  const Table points = points_table(sweep);
+LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optional<keys::Prices>& prices) {
+  const tables::Table points = sweep::points_table(sweep);
   const StoredLimits limits(sweep, prices);
-  std::vector<Column> columns(points.columns().begin(), points.columns().end());
-  const auto ordinal =
-      static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(),
-                                            [](const Column& column) { return column.name == "ordinal"; }) -
-                               columns.begin());
+  std::vector<tables::Column> columns(points.columns().begin(), points.columns().end());
+  const auto ordinal = static_cast<std::size_t>(
+      std::find_if(columns.begin(), columns.end(),
+                   [](const tables::Column& column) { return column.name == "ordinal"; }) -
+      columns.begin());
   columns.push_back(
-      {"limit", ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"});
+      {"limit", tables::ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"});
   columns.push_back(
-      {"limit_saves", ColumnType::real, "fraction", "of the frame time that this saves, predicted"});
-  columns.push_back({"limit_rests_on", ColumnType::text, "", "what the prediction rests on"});
-  Table table(points.name(), points.title(), columns);
+      {"limit_saves", tables::ColumnType::real, "fraction", "of the frame time that this saves, predicted"});
+  columns.push_back({"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"});
+  tables::Table table(points.name(), points.title(), columns);
   std::map<std::string, std::size_t> count;
-  for (const std::vector<Cell>& row : points.rows()) {
-    std::vector<Cell> cells = row;
+  for (const std::vector<tables::Cell>& row : points.rows()) {
+    std::vector<tables::Cell> cells = row;
     const std::optional<PointLimit> limit = limits.at(std::get<std::int64_t>(row.at(ordinal)));
     const PredictedStep* const best = limit ? limit->best() : nullptr;
     if (best != nullptr) {
       cells.insert(cells.end(), {best->name, best->saved, best->rests_on});
     } else {
-      cells.insert(cells.end(), {Cell(), Cell(), Cell()});
+      cells.insert(cells.end(), {tables::Cell(), tables::Cell(), tables::Cell()});
     }
     if (limit) {
       ++count[best != nullptr ? best->name : "nothing known"];
@@ -62,4 +62,4 @@ LimitedPoints limited_points(const SweepReader& sweep, const std::optional<Price
   return {std::move(table), limits_line(count)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -6,14 +6,15 @@
 #include "studies/limits/stored_limits.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 struct LimitedPoints {
-  Table table;       ///< points_table() and behind it the columns limit, limit_saves, limit_rests_on
-  std::string text;  ///< how many points each resource limits; empty where nothing is known
+  tables::Table table;  ///< points_table() and behind it the columns limit, limit_saves, limit_rests_on
+  std::string text;     ///< how many points each resource limits; empty where nothing is known
 };
 
 /// `prices`: steps are ranked by what they save for their price.
-[[nodiscard]] LimitedPoints limited_points(const SweepReader& sweep, const std::optional<Prices>& prices);
+[[nodiscard]] LimitedPoints limited_points(const sweep::SweepReader& sweep,
+                                           const std::optional<keys::Prices>& prices);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -7,7 +7,7 @@
 #include "sim/error.h"
 #include "studies/keys/setting_value.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -58,9 +58,10 @@ std::optional<std::size_t> Neighbours::axis_of(std::string_view key) const {
   return found == axes_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - axes_.begin()));
 }
 
-std::optional<std::size_t> Neighbours::changed(std::size_t point, std::span<const KeyChange> changes) const {
+std::optional<std::size_t> Neighbours::changed(std::size_t point,
+                                               std::span<const helps::KeyChange> changes) const {
   Place place = places_[point];
-  for (const KeyChange& change : changes) {
+  for (const helps::KeyChange& change : changes) {
     const std::optional<std::size_t> axis = axis_of(change.key);
     if (!axis) {
       return std::nullopt;
@@ -102,7 +103,7 @@ std::optional<double> Neighbours::number(std::size_t point, std::string_view key
 
 std::string Neighbours::text(std::size_t point, std::string_view key) const {
   const std::optional<std::size_t> axis = axis_of(key);
-  return axis ? plain_setting(axes_[*axis].texts[places_[point][*axis]]) : std::string();
+  return axis ? keys::plain_setting(axes_[*axis].texts[places_[point][*axis]]) : std::string();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -12,7 +12,7 @@
 #include "sim/config.h"
 #include "studies/helps/change.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 class Neighbours {
  public:
@@ -21,7 +21,7 @@ class Neighbours {
 
   /// The point that differs from `point` by these changes; std::nullopt if there is none.
   [[nodiscard]] std::optional<std::size_t> changed(std::size_t point,
-                                                   std::span<const KeyChange> changes) const;
+                                                   std::span<const helps::KeyChange> changes) const;
   /// The points that differ in the values of `keys` at most, itself among them.
   [[nodiscard]] std::vector<std::size_t> along(std::size_t point,
                                                std::span<const std::string_view> keys) const;
@@ -46,4 +46,4 @@ class Neighbours {
   std::map<Place, std::size_t> points_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

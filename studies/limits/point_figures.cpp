@@ -3,13 +3,13 @@
 #include <initializer_list>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
-PointFigures point_figures(const Counts& counts) {
+PointFigures point_figures(const figures::Counts& counts) {
   const auto sum = [&](std::initializer_list<std::string_view> figures) {
     double all = 0.0;
     for (const std::string_view figure : figures) {
-      all += static_cast<double>(count_of(counts, figure).value_or(0));
+      all += static_cast<double>(figures::count_of(counts, figure).value_or(0));
     }
     return all;
   };
@@ -40,4 +40,4 @@ PointFigures point_figures(const Counts& counts) {
   return figures;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

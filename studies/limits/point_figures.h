@@ -3,7 +3,7 @@
 
 #include "studies/figures/counted_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// Sums over all nodes, clusters and banks; times in ps. 0 where the machine has no such part.
 struct PointFigures {
@@ -31,6 +31,6 @@ struct PointFigures {
   double bank_waits = 0.0;
 };
 
-[[nodiscard]] PointFigures point_figures(const Counts& counts);
+[[nodiscard]] PointFigures point_figures(const figures::Counts& counts);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

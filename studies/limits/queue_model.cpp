@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 std::vector<double> throughputs(const QueueModel& model, std::uint64_t customers, double stretch) {
   double most = std::numeric_limits<double>::infinity();
@@ -36,4 +36,4 @@ double throughput_at(const std::vector<double>& throughputs, double customers) {
   return std::lerp(throughputs[below], throughputs[below + 1], customers - static_cast<double>(below));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// A queue that serves one visit at a time. Times may have any unit.
 struct Station {
@@ -31,4 +31,4 @@ struct QueueModel {
 /// Of a mean number of customers, linear between whole ones; beyond the last, that of the last.
 [[nodiscard]] double throughput_at(const std::vector<double>& throughputs, double customers);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

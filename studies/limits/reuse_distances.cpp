@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -104,4 +104,4 @@ double ReuseDistances::misses(double sets, double ways) const {
   return sum;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

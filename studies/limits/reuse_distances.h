@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// Misses of a cache with this shape. All caches of a fit have the same lines and see the same references.
 struct CacheMisses {
@@ -38,4 +38,4 @@ class ReuseDistances {
   Row references_{};  // with this number of other lines since the last use
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

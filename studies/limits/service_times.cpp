@@ -1,6 +1,6 @@
 #include "studies/limits/service_times.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -32,7 +32,7 @@ struct Services {
 
 }  // namespace
 
-ServiceTimes service_times(const processors::MachineConfig& machine) {
+ServiceTimes service_times(const processors::machine::MachineConfig& machine) {
   const memory::InterconnectConfig& interconnect = machine.interconnect;
   ServiceTimes times;
   if (interconnect.kind == InterconnectKind::ideal) {
@@ -53,7 +53,7 @@ ServiceTimes service_times(const processors::MachineConfig& machine) {
   return times;
 }
 
-std::vector<Station> interconnect_stations(const processors::MachineConfig& machine, double writes) {
+std::vector<Station> interconnect_stations(const processors::machine::MachineConfig& machine, double writes) {
   const ServiceTimes times = service_times(machine);
   if (machine.interconnect.kind == InterconnectKind::ideal || times.read_busy() <= 0.0) {
     return {};
@@ -75,4 +75,4 @@ std::vector<Station> interconnect_stations(const processors::MachineConfig& mach
   return {services.station(1.0 + addresses)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

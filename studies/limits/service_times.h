@@ -6,7 +6,7 @@
 #include "processors/machine/machine_config.h"
 #include "studies/limits/queue_model.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// Of a machine with one shared memory a cluster; ps. Reads are lines, writes are pixels.
 struct ServiceTimes {
@@ -22,11 +22,11 @@ struct ServiceTimes {
   [[nodiscard]] double read_busy() const { return address + data + held; }
 };
 
-[[nodiscard]] ServiceTimes service_times(const processors::MachineConfig& machine);
+[[nodiscard]] ServiceTimes service_times(const processors::machine::MachineConfig& machine);
 
 /// What transactions queue for before and behind the banks: nothing, a bus, or a link for each bank, which
 /// are taken to be equally busy. A cycle is one read and `writes` writes.
-[[nodiscard]] std::vector<Station> interconnect_stations(const processors::MachineConfig& machine,
+[[nodiscard]] std::vector<Station> interconnect_stations(const processors::machine::MachineConfig& machine,
                                                          double writes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -9,11 +9,11 @@
 #include "studies/limits/step_reasons.h"
 #include "studies/limits/step_values.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 // Steps that change clocks, times and numbers of the model and nothing else.
 bool is_modelled(std::string_view name) {
@@ -28,8 +28,8 @@ bool is_modelled(std::string_view name) {
 
 // Whether misses of other caches follow from those of the neighbours.
 bool has_plain_cache(const MachineConfig& machine) {
-  return machine.cache.organisation == processors::CacheOrganisation::unified &&
-         machine.l2.sharing == processors::SecondLevel::none;
+  return machine.cache.organisation == processors::machine::CacheOrganisation::unified &&
+         machine.l2.sharing == processors::machine::SecondLevel::none;
 }
 
 // Of the host, in ps a request.
@@ -48,7 +48,7 @@ StepPredictor::StepPredictor(std::span<const LimitPoint> points, std::span<const
       point_(point),
       model_(FrameModel::of(machines[point], points[point].figures)) {}
 
-PredictedStep StepPredictor::predict(const Resource& resource) const {
+PredictedStep StepPredictor::predict(const helps::Resource& resource) const {
   PredictedStep step;
   step.name = resource.name;
   step.part = resource.part;
@@ -78,7 +78,7 @@ PredictedStep StepPredictor::predict(const Resource& resource) const {
   return step;
 }
 
-std::optional<StepPredictor::Guess> StepPredictor::from_model(const Resource& resource) const {
+std::optional<StepPredictor::Guess> StepPredictor::from_model(const helps::Resource& resource) const {
   const MachineConfig& changed = resource.step->machine;
   if (is_modelled(resource.name)) {
     FrameWork work = model_->work_on(changed);
@@ -100,7 +100,7 @@ std::optional<StepPredictor::Guess> StepPredictor::from_model(const Resource& re
   return resource.name.starts_with("cache.line") ? cache_line(resource) : std::nullopt;
 }
 
-std::optional<StepPredictor::Guess> StepPredictor::from_line(const Resource& resource) const {
+std::optional<StepPredictor::Guess> StepPredictor::from_line(const helps::Resource& resource) const {
   const std::string& key = resource.step->keys[0].key;
   const std::optional<double> from = neighbours_.number(point_, key);
   const std::optional<double> to = number_of(*resource.step);
@@ -116,15 +116,15 @@ std::optional<StepPredictor::Guess> StepPredictor::from_line(const Resource& res
                LimitBasis::interpolated, "interpolated: " + saving(*beyond, key)};
 }
 
-double StepPredictor::most_saved(const Resource& resource) const {
+double StepPredictor::most_saved(const helps::Resource& resource) const {
   const double all = figures().end * machine().all_nodes();
   switch (resource.part) {
-    case Part::queues:
-      return machine().scheme == processors::Scheme::image ? figures().queue_full_wait / all : 1.0;
-    case Part::caches:
-    case Part::second_level:
+    case helps::Part::queues:
+      return machine().scheme == processors::machine::Scheme::image ? figures().queue_full_wait / all : 1.0;
+    case helps::Part::caches:
+    case helps::Part::second_level:
       return model_ ? 1.0 - std::min(1.0, (figures().computing + figures().cache_access) / all) : 1.0;
-    case Part::nodes:
+    case helps::Part::nodes:
       // Smaller packets spread the same work more evenly.
       return resource.name.starts_with("packets.") ? figures().idle / all : 1.0;
     default:
@@ -158,4 +158,4 @@ std::string StepPredictor::saving(std::size_t neighbour, std::string_view key) c
                      100.0 * std::abs(saved));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -7,13 +7,14 @@
 #include "studies/helps/resource.h"
 #include "studies/limits/point_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// Whether the part is busy for 90 % of the frame or more: its interconnect's links on average, or a bank.
-[[nodiscard]] bool is_full(Part part, const processors::MachineConfig& machine, const PointFigures& figures);
+[[nodiscard]] bool is_full(helps::Part part, const processors::machine::MachineConfig& machine,
+                           const PointFigures& figures);
 
 /// "bound: the bus is 97.2 % busy", "model: nodes compute for 88.1 % of their time".
-[[nodiscard]] std::string reason_of(Part part, const processors::MachineConfig& machine,
+[[nodiscard]] std::string reason_of(helps::Part part, const processors::machine::MachineConfig& machine,
                                     const PointFigures& figures);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -8,10 +8,10 @@
 
 #include "studies/helps/change.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// The value of the one key that the change sets; std::nullopt if it sets several or the value is no number.
-inline std::optional<double> number_of(const Change& change) {
+inline std::optional<double> number_of(const helps::Change& change) {
   if (change.settings.size() != 1 || change.settings[0].values.size() != 1) {
     return std::nullopt;
   }
@@ -28,4 +28,4 @@ inline double part_of_way(double from, double to, double beyond) {
   return std::log(to / from) / std::log(beyond / from);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -56,21 +56,21 @@ class DifferingKeys {
 
 }  // namespace
 
-StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>& prices) {
-  const sim::Schema& schema = sweep_schema();
+StoredLimits::StoredLimits(const sweep::SweepReader& sweep, const std::optional<keys::Prices>& prices) {
+  const sim::Schema& schema = sweep::sweep_schema();
   DifferingKeys differing;
   std::vector<LimitPoint> points;
   std::map<std::int64_t, std::optional<PointFigures>> one_node;  // by the id of a base machine
-  for (const StoredPoint& point : sweep.points()) {
-    const std::optional<SweepRow> row = sweep.read_result(point.machine);
-    if (!row || count_of(row->counters, "end").value_or(0) <= 0) {
+  for (const sweep::StoredPoint& point : sweep.points()) {
+    const std::optional<sweep::SweepRow> row = sweep.read_result(point.machine);
+    if (!row || figures::count_of(row->counters, "end").value_or(0) <= 0) {
       continue;
     }
     if (points.size() == most_limited_points) {
       places_.clear();
       return;
     }
-    const Settings settings = sweep.settings(point.machine);
+    const explore::Settings settings = sweep.settings(point.machine);
     try {
       points.push_back(
           {config_of(schema, settings, sweep.file().string()), point_figures(row->counters), std::nullopt});
@@ -83,8 +83,8 @@ StoredLimits::StoredLimits(const SweepReader& sweep, const std::optional<Prices>
     // Many points have one base.
     const auto [base, is_new] = one_node.try_emplace(point.base);
     if (is_new) {
-      const std::optional<SweepRow> result = sweep.read_result(point.base);
-      if (result && count_of(result->counters, "nodes") == 1) {
+      const std::optional<sweep::SweepRow> result = sweep.read_result(point.base);
+      if (result && figures::count_of(result->counters, "nodes") == 1) {
         base->second = point_figures(result->counters);
       }
     }
@@ -98,4 +98,4 @@ std::optional<PointLimit> StoredLimits::at(std::int64_t ordinal) const {
   return place == places_.end() ? std::nullopt : std::optional(limits_->at(place->second));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -8,7 +8,7 @@
 #include "studies/limits/sweep_limits.h"
 #include "studies/sweep/store/sweep_reader.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// Nothing is said of sweeps with more timed points: each takes about a millisecond and some 30 KiB.
 inline constexpr std::size_t most_limited_points = 4'000;
@@ -16,7 +16,8 @@ inline constexpr std::size_t most_limited_points = 4'000;
 class StoredLimits {
  public:
   /// Reads the settings and figures of all timed points.
-  explicit StoredLimits(const SweepReader& sweep, const std::optional<Prices>& prices = std::nullopt);
+  explicit StoredLimits(const sweep::SweepReader& sweep,
+                        const std::optional<keys::Prices>& prices = std::nullopt);
 
   /// std::nullopt for a point that has not been timed, or whose frame takes no time; for all points of a
   /// sweep with more than most_limited_points, or with settings that this version of the program does not
@@ -28,4 +29,4 @@ class StoredLimits {
   std::optional<SweepLimits> limits_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -10,7 +10,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/limits/step_predictor.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 namespace {
 
@@ -20,8 +20,8 @@ std::uint64_t counted(double count) {
   return static_cast<std::uint64_t>(std::clamp(count, 0.0, most));
 }
 
-FrameFacts facts_of(const PointFigures& figures) {
-  FrameFacts facts;
+helps::FrameFacts facts_of(const PointFigures& figures) {
+  helps::FrameFacts facts;
   facts.packets = counted(figures.packets);
   facts.pixels = counted(figures.pixels);
   facts.database_bytes = counted(figures.database_bytes);
@@ -33,13 +33,14 @@ FrameFacts facts_of(const PointFigures& figures) {
 }  // namespace
 
 const PredictedStep* PointLimit::best() const {
-  return !steps.empty() && steps[0].basis != LimitBasis::unknown && steps[0].saved >= worth_naming ? &steps[0]
-                                                                                                   : nullptr;
+  return !steps.empty() && steps[0].basis != LimitBasis::unknown && steps[0].saved >= helps::worth_naming
+             ? &steps[0]
+             : nullptr;
 }
 
 std::vector<const PredictedStep*> PointLimit::open() const {
   const PredictedStep* const first = best();
-  const double least = first != nullptr ? first->saved : worth_naming;
+  const double least = first != nullptr ? first->saved : helps::worth_naming;
   std::vector<const PredictedStep*> found;
   for (const PredictedStep& step : steps) {
     if (step.basis == LimitBasis::unknown && step.most_saved > least) {
@@ -52,24 +53,24 @@ std::vector<const PredictedStep*> PointLimit::open() const {
 std::string PointLimit::sentence() const {
   const PredictedStep* const first = best();
   std::string text = first != nullptr
-                         ? fmt::format("{}: frame {}{:.1f} % shorter; {}", describe(first->keys),
+                         ? fmt::format("{}: frame {}{:.1f} % shorter; {}", helps::describe(first->keys),
                                        first->basis == LimitBasis::neighbour ? "" : "about ",
                                        100.0 * first->saved, first->rests_on)
                          : fmt::format("no step that can be predicted makes the frame {:.1f} % shorter",
-                                       100.0 * worth_naming);
+                                       100.0 * helps::worth_naming);
   std::string unknown;
   for (const PredictedStep* const step : open()) {
-    unknown += (unknown.empty() ? "; not known: " : "; ") + describe(step->keys);
+    unknown += (unknown.empty() ? "; not known: " : "; ") + helps::describe(step->keys);
   }
   return text + unknown;
 }
 
 SweepLimits::SweepLimits(std::vector<std::string> axes, std::vector<LimitPoint> points,
-                         std::optional<Prices> prices)
+                         std::optional<keys::Prices> prices)
     : points_(std::move(points)), neighbours_(std::move(axes), configs_of(points_)), prices_(prices) {
   for (const LimitPoint& point : points_) {
     sim::Config config = point.config;
-    machines_.push_back(read_machine(config));
+    machines_.push_back(keys::read_machine(config));
   }
 }
 
@@ -82,24 +83,26 @@ std::vector<const sim::Config*> SweepLimits::configs_of(const std::vector<LimitP
 }
 
 PointLimit SweepLimits::at(std::size_t point) const {
-  const processors::MachineConfig& machine = machines_[point];
-  const Changer changer(points_[point].config);
+  const processors::machine::MachineConfig& machine = machines_[point];
+  const helps::Changer changer(points_[point].config);
   const StepPredictor predictor(points_, machines_, neighbours_, point);
   PointLimit limit;
-  for (const Resource& resource : resources_of(changer, machine, facts_of(points_[point].figures))) {
+  for (const helps::Resource& resource :
+       helps::resources_of(changer, machine, facts_of(points_[point].figures))) {
     if (resource.step) {
       limit.steps.push_back(predictor.predict(resource));
       if (prices_) {
-        limit.steps.back().price = cost_of(*prices_, resource.step->machine) - cost_of(*prices_, machine);
+        limit.steps.back().price =
+            keys::cost_of(*prices_, resource.step->machine) - keys::cost_of(*prices_, machine);
       }
     }
   }
   const auto order = [](const PredictedStep& step) {
-    return step.basis == LimitBasis::unknown ? std::pair(-1, 0.0) : worth(step.saved, step.price);
+    return step.basis == LimitBasis::unknown ? std::pair(-1, 0.0) : helps::worth(step.saved, step.price);
   };
   std::stable_sort(limit.steps.begin(), limit.steps.end(),
                    [&](const PredictedStep& a, const PredictedStep& b) { return order(a) > order(b); });
   return limit;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -15,7 +15,7 @@
 #include "studies/limits/neighbours.h"
 #include "studies/limits/point_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::limits {
 
 /// A point of a sweep that has been timed.
 struct LimitPoint {
@@ -38,8 +38,8 @@ enum class LimitBasis : std::uint8_t {
 /// One of the resources that can be made better (studies/helps/resources.h).
 struct PredictedStep {
   std::string name;  ///< the key that is changed, as in studies/helps
-  Part part = Part::nodes;
-  std::vector<KeyChange> keys;
+  helps::Part part = helps::Part::nodes;
+  std::vector<helps::KeyChange> keys;
   LimitBasis basis = LimitBasis::unknown;
   double saved = 0.0;       ///< share of the frame time; negative: the frame is longer. 0 if unknown
   double most_saved = 1.0;  ///< if unknown: no more than that
@@ -61,7 +61,7 @@ class SweepLimits {
  public:
   /// `axes` are the keys in which the points differ. Throws UserError for a machine that cannot be read.
   SweepLimits(std::vector<std::string> axes, std::vector<LimitPoint> points,
-              std::optional<Prices> prices = std::nullopt);
+              std::optional<keys::Prices> prices = std::nullopt);
 
   /// Two threads may ask at once, but not for one point.
   [[nodiscard]] PointLimit at(std::size_t point) const;
@@ -70,9 +70,9 @@ class SweepLimits {
   [[nodiscard]] static std::vector<const sim::Config*> configs_of(const std::vector<LimitPoint>& points);
 
   std::vector<LimitPoint> points_;
-  std::vector<processors::MachineConfig> machines_;
+  std::vector<processors::machine::MachineConfig> machines_;
   Neighbours neighbours_;
-  std::optional<Prices> prices_;
+  std::optional<keys::Prices> prices_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::limits

@@ -12,7 +12,7 @@
 #include "studies/run/open_frame.h"
 #include "studies/tables/provenance.h"
 
-namespace marti::studies {
+namespace marti::studies::operations {
 
 namespace {
 
@@ -50,10 +50,10 @@ constexpr std::array<CountedWalk, 11> plans{{
 }  // namespace
 
 OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
-  const FrameConfig frame = read_frame(config);
-  static_cast<void>(read_machine(config));
+  const keys::FrameConfig frame = keys::read_frame(config);
+  static_cast<void>(keys::read_machine(config));
   config.refuse_unused();
-  const scenes::Scene scene = open_frame(frame);
+  const scenes::Scene scene = run::open_frame(frame);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
 
   OperationsStudy study;
@@ -73,7 +73,7 @@ OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
     if (structure->kind() == "none") {
       side = std::min(side, std::max(4.0, std::sqrt(most_tests / std::max(1U, triangles->size()))));
     }
-    processors::RenderOptions render = made_small(frame.render, side);
+    processors::program::RenderOptions render = keys::made_small(frame.render, side);
     for (const bool mailboxes : {false, true}) {
       render.mailboxes = mailboxes;
       if (mailboxes && structure->kind() == "none") {
@@ -85,7 +85,7 @@ OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
       row.side = std::max(render.width, render.height);
       row.nodes = structure->topology().nodes.size();
       row.entries = structure->topology().entries.size();
-      row.measured = processors::measure_operation_mixes(scene, *triangles, *structure, render);
+      row.measured = processors::cost::measure_operation_mixes(scene, *triangles, *structure, render);
     }
     sim::count_step(meter);
   }
@@ -93,10 +93,10 @@ OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
   return study;
 }
 
-StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter) {
-  StudyOutput output = output_of(count_operations(config, meter));
-  output.tables.push_back(provenance_table(config.effective_values()));
+tables::StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter) {
+  tables::StudyOutput output = output_of(count_operations(config, meter));
+  output.tables.push_back(tables::provenance_table(config.effective_values()));
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::operations

@@ -11,7 +11,7 @@
 #include "studies/operations/unit_length.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::operations {
 
 /// One walk over the configured scene, counted.
 struct WalkRow {
@@ -20,7 +20,7 @@ struct WalkRow {
   std::uint32_t side = 0;  ///< pixels of the image's longer side
   std::uint64_t nodes = 0;
   std::uint64_t entries = 0;
-  processors::MeasuredMixes measured;
+  processors::cost::MeasuredMixes measured;
 };
 
 struct OperationsStudy {
@@ -39,10 +39,10 @@ struct OperationsStudy {
 
 /// Report and tables: "operations" has a row for each walk and kind of step, "unit_length" one for each depth
 /// and structure.
-[[nodiscard]] StudyOutput output_of(const OperationsStudy& study);
+[[nodiscard]] tables::StudyOutput output_of(const OperationsStudy& study);
 
 /// Runs the study: its report, its tables, and the provenance of its numbers.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_operations(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::operations

@@ -7,11 +7,11 @@
 
 #include "studies/operations/operations.h"
 
-namespace marti::studies {
+namespace marti::studies::operations {
 
 namespace {
 
-using processors::OperationMix;
+using processors::cost::OperationMix;
 using Lines = std::back_insert_iterator<std::string>;
 
 constexpr std::size_t operation_kinds = 6;
@@ -35,12 +35,12 @@ struct StepRow {
 
 /// Setting up, branch, leaf, look-up, tests by kind, and what a ray takes without and with its tests.
 std::vector<StepRow> steps_of(const WalkRow& row) {
-  const processors::LogTotals& steps = row.measured.steps;
-  const processors::OperationMixes& mixes = row.measured.mixes;
+  const processors::program::LogTotals& steps = row.measured.steps;
+  const processors::cost::OperationMixes& mixes = row.measured.mixes;
   const auto rays = static_cast<double>(steps.all_rays());
   const auto per_ray = [rays](std::uint64_t count) { return static_cast<double>(count) / rays; };
   Operations set_up{};
-  for (std::size_t kind = 0; kind < processors::ray_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < processors::program::ray_kinds; ++kind) {
     const Operations one = of(mixes.ray[kind]);
     for (std::size_t i = 0; i < operation_kinds; ++i) {
       set_up[i] += one[i] * per_ray(steps.rays[kind]);
@@ -76,7 +76,7 @@ void walk_lines(Lines out, const OperationsStudy& study) {
                  study.scene, study.max_depth, study.max_objects, study.max_level, "walk", "side", "nodes",
                  "entries", "branches", "leaves", "lookups", "tests");
   for (const WalkRow& row : study.walks) {
-    const processors::LogTotals& steps = row.measured.steps;
+    const processors::program::LogTotals& steps = row.measured.steps;
     const auto per_ray = [&](std::uint64_t count) {
       return static_cast<double>(count) / static_cast<double>(steps.all_rays());
     };
@@ -157,33 +157,33 @@ std::string text_of(const OperationsStudy& study) {
   return text;
 }
 
-void add_operation_columns(std::vector<Column>& columns, std::string_view of_what) {
+void add_operation_columns(std::vector<tables::Column>& columns, std::string_view of_what) {
   for (const std::string_view name : operation_names) {
-    columns.push_back({std::string(name), ColumnType::real, "1",
+    columns.push_back({std::string(name), tables::ColumnType::real, "1",
                        std::string(name == "integer" ? "integer and logic operations" : name) + ", " +
                            std::string(of_what)});
   }
 }
 
-Table step_table(const OperationsStudy& study) {
-  std::vector<Column> columns = {
-      {"walk", ColumnType::text, "", "structure and walk"},
-      {"mailboxes", ColumnType::integer, "1", "1 with mailboxes, else 0"},
-      {"nodes", ColumnType::integer, "1", "nodes of the structure"},
-      {"entries", ColumnType::integer, "1", "primitives listed in its leaves"},
-      {"step", ColumnType::text, "",
+tables::Table step_table(const OperationsStudy& study) {
+  std::vector<tables::Column> columns = {
+      {"walk", tables::ColumnType::text, "", "structure and walk"},
+      {"mailboxes", tables::ColumnType::integer, "1", "1 with mailboxes, else 0"},
+      {"nodes", tables::ColumnType::integer, "1", "nodes of the structure"},
+      {"entries", tables::ColumnType::integer, "1", "primitives listed in its leaves"},
+      {"step", tables::ColumnType::text, "",
        "kind of step; walk: all branches and leaves of a ray; all: the whole ray"},
-      {"steps_per_ray", ColumnType::real, "1", "steps of the kind that a ray takes, on average"}};
+      {"steps_per_ray", tables::ColumnType::real, "1", "steps of the kind that a ray takes, on average"}};
   add_operation_columns(columns, "on average, of one step");
-  Table table("operations", "Operations of each walk", std::move(columns));
+  tables::Table table("operations", "Operations of each walk", std::move(columns));
   for (const WalkRow& row : study.walks) {
     for (const StepRow& step : steps_of(row)) {
-      std::vector<Cell> cells = {row.name,
-                                 count_cell(row.mailboxes ? 1 : 0),
-                                 count_cell(row.nodes),
-                                 count_cell(row.entries),
-                                 std::string(step.name),
-                                 step.per_ray};
+      std::vector<tables::Cell> cells = {row.name,
+                                         tables::count_cell(row.mailboxes ? 1 : 0),
+                                         tables::count_cell(row.nodes),
+                                         tables::count_cell(row.entries),
+                                         std::string(step.name),
+                                         step.per_ray};
       cells.insert(cells.end(), step.operations.begin(), step.operations.end());
       table.add_row(std::move(cells));
     }
@@ -191,24 +191,26 @@ Table step_table(const OperationsStudy& study) {
   return table;
 }
 
-Table length_table(const OperationsStudy& study) {
-  std::vector<Column> columns = {
-      {"depth", ColumnType::integer, "1", "levels of the octree"},
-      {"width", ColumnType::integer, "1", "finest cells along an axis"},
-      {"structure", ColumnType::text, "", "what the rays walk through"},
-      {"predicted_nodes", ColumnType::real, "1", "nodes per unit length by the argument; none for a surface"},
-      {"nodes", ColumnType::real, "1", "nodes visited per unit length, the width of the finest cell"},
-      {"branches", ColumnType::real, "1", "of these, branches"},
-      {"leaves", ColumnType::real, "1", "of these, leaves"}};
+tables::Table length_table(const OperationsStudy& study) {
+  std::vector<tables::Column> columns = {
+      {"depth", tables::ColumnType::integer, "1", "levels of the octree"},
+      {"width", tables::ColumnType::integer, "1", "finest cells along an axis"},
+      {"structure", tables::ColumnType::text, "", "what the rays walk through"},
+      {"predicted_nodes", tables::ColumnType::real, "1",
+       "nodes per unit length by the argument; none for a surface"},
+      {"nodes", tables::ColumnType::real, "1", "nodes visited per unit length, the width of the finest cell"},
+      {"branches", tables::ColumnType::real, "1", "of these, branches"},
+      {"leaves", tables::ColumnType::real, "1", "of these, leaves"}};
   add_operation_columns(columns, "of the walk per unit length");
-  Table table("unit_length", "Operations per unit length of a ray", std::move(columns));
+  tables::Table table("unit_length", "Operations per unit length of a ray", std::move(columns));
   for (const UnitLengthRow& row : study.lengths) {
     const auto unit = [&](std::uint64_t count) { return static_cast<double>(count) / row.length; };
-    const auto line = [&](const char* name, const Cell& predicted, std::uint64_t branches,
+    const auto line = [&](const char* name, const tables::Cell& predicted, std::uint64_t branches,
                           std::uint64_t leaves, const accel::OperationCounts& c) {
-      table.add_row({count_cell(row.depth), count_cell(row.width), std::string(name), predicted,
-                     unit(branches + leaves), unit(branches), unit(leaves), unit(c.add), unit(c.multiply),
-                     unit(c.divide), unit(c.square_root), unit(c.compare), unit(c.integer)});
+      table.add_row({tables::count_cell(row.depth), tables::count_cell(row.width), std::string(name),
+                     predicted, unit(branches + leaves), unit(branches), unit(leaves), unit(c.add),
+                     unit(c.multiply), unit(c.divide), unit(c.square_root), unit(c.compare),
+                     unit(c.integer)});
     };
     line("grid", 1.5, 0, row.cells, row.grid);
     line("full octree", predicted_full(row), row.full_branches, row.full_leaves, row.full);
@@ -219,11 +221,11 @@ Table length_table(const OperationsStudy& study) {
 
 }  // namespace
 
-StudyOutput output_of(const OperationsStudy& study) {
-  StudyOutput output;
+tables::StudyOutput output_of(const OperationsStudy& study) {
+  tables::StudyOutput output;
   output.tables = {step_table(study), length_table(study)};
   output.report = text_of(study);
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::operations

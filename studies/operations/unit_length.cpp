@@ -10,7 +10,7 @@
 #include "processors/cost/operation_mix.h"
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::operations {
 
 namespace {
 
@@ -100,7 +100,7 @@ class IsotropicRays {
   std::mt19937_64 engine_{1992};
 };
 
-accel::OperationCounts walk_of(const processors::MeasuredWalks& walks) {
+accel::OperationCounts walk_of(const processors::cost::MeasuredWalks& walks) {
   accel::OperationCounts sum = walks.branch;
   sum += walks.leaf;
   return sum;
@@ -134,20 +134,20 @@ std::vector<UnitLengthRow> measure_unit_lengths(std::uint32_t deepest, std::uint
       const auto octree = accel::make_structure("octree", filling, options);
       sim::ensure(octree->topology().nodes.size() == ((std::size_t{1} << (3 * depth)) - 1) / 7,
                   "unit lengths: the octree is not full");
-      const processors::MeasuredWalks walks = processors::measure_walks(*octree, all);
+      const processors::cost::MeasuredWalks walks = processors::cost::measure_walks(*octree, all);
       row.full_branches = walks.steps.branches;
       row.full_leaves = walks.steps.leaves;
       row.full = walk_of(walks);
     }
     {
       const auto grid = accel::make_structure("grid", filling, options);
-      const processors::MeasuredWalks walks = processors::measure_walks(*grid, all);
+      const processors::cost::MeasuredWalks walks = processors::cost::measure_walks(*grid, all);
       row.cells = walks.steps.leaves;
       row.grid = walk_of(walks);
     }
     const auto octree = accel::make_structure(
         "octree", std::make_shared<const accel::TriangleSet>(sphere_points(depth)), options);
-    const processors::MeasuredWalks walks = processors::measure_walks(*octree, all);
+    const processors::cost::MeasuredWalks walks = processors::cost::measure_walks(*octree, all);
     row.surface_branches = walks.steps.branches;
     row.surface_leaves = walks.steps.leaves;
     row.surface = walk_of(walks);
@@ -155,4 +155,4 @@ std::vector<UnitLengthRow> measure_unit_lengths(std::uint32_t deepest, std::uint
   return rows;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::operations

@@ -6,7 +6,7 @@
 
 #include "accel/counted.h"
 
-namespace marti::studies {
+namespace marti::studies::operations {
 
 /// One tree depth; lengths are in widths of the finest cell, of which there are `width` along each axis.
 struct UnitLengthRow {
@@ -32,4 +32,4 @@ struct UnitLengthRow {
 /// no ray ends early. Operations are those of the walk between its visits; tests and setting up are left out.
 [[nodiscard]] std::vector<UnitLengthRow> measure_unit_lengths(std::uint32_t deepest, std::uint32_t rays);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::operations

@@ -14,7 +14,7 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// An initial level to try.
 struct InitialLevel {
@@ -34,18 +34,18 @@ struct InitialLevel {
 /// One machine that began with the tree built to an initial level.
 struct LevelOutcome {
   InitialLevel initial;
-  sim::Ticks build = 0;             ///< until the initial tree was there
-  sim::Ticks render = 0;            ///< from then to the end of the frame, building on demand included
-  processors::TimeDivision time{};  ///< of all nodes together, from the beginning of the build
-  std::uint64_t splits = 0;         ///< branches divided, before the frame and in it
-  std::uint64_t nodes = 0;          ///< of the tree that the frame leaves: branches, leaves, partial
+  sim::Ticks build = 0;                   ///< until the initial tree was there
+  sim::Ticks render = 0;                  ///< from then to the end of the frame, building on demand included
+  processors::cost::TimeDivision time{};  ///< of all nodes together, from the beginning of the build
+  std::uint64_t splits = 0;               ///< branches divided, before the frame and in it
+  std::uint64_t nodes = 0;                ///< of the tree that the frame leaves: branches, leaves, partial
   std::uint64_t partial = 0;
   std::uint64_t bytes = 0;  ///< of its records and lists
 
   [[nodiscard]] sim::Ticks total() const { return sim::add_ticks(build, render); }
   /// Compute time for building, before the frame and in it.
   [[nodiscard]] sim::Ticks building() const {
-    return time[static_cast<std::size_t>(processors::Activity::building)];
+    return time[static_cast<std::size_t>(processors::cost::Activity::building)];
   }
 };
 
@@ -63,12 +63,12 @@ struct RunOutcomes {
 [[nodiscard]] double saved(std::uint64_t value, std::uint64_t whole);
 
 /// "table2" for the first run, "table3" for the second, and so on: a row for each initial level.
-[[nodiscard]] Table building_table(std::size_t index, const RunOutcomes& outcomes);
+[[nodiscard]] tables::Table building_table(std::size_t index, const RunOutcomes& outcomes);
 
 /// "initial_levels": the rows of all of them, for charts.
-[[nodiscard]] Table initial_level_table(std::span<const RunOutcomes> runs);
+[[nodiscard]] tables::Table initial_level_table(std::span<const RunOutcomes> runs);
 
 /// "savings": what each rule saves against building the whole tree.
-[[nodiscard]] Table savings_table(std::span<const RunOutcomes> runs, std::span<const double> rules);
+[[nodiscard]] tables::Table savings_table(std::span<const RunOutcomes> runs, std::span<const double> rules);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -10,7 +10,7 @@
 #include "processors/cost/operation_mix.h"
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
@@ -25,14 +25,14 @@ const SceneTrees* find(std::span<const SceneTrees> scenes, std::string_view name
   return at == scenes.end() ? nullptr : &*at;
 }
 
-Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::uint64_t published) {
-  Claim claim{fmt::format("size of {}", name), fmt::format("{} polygons", published), "", {}};
-  claim.verdict = Verdict::not_measured;
+tables::Claim polygons(std::span<const SceneTrees> scenes, std::string_view name, std::uint64_t published) {
+  tables::Claim claim{fmt::format("size of {}", name), fmt::format("{} polygons", published), "", {}};
+  claim.verdict = tables::Verdict::not_measured;
   if (const SceneTrees* scene = find(scenes, name)) {
     // The pot's polygons are its triangles; other scenes keep the count of their source.
     const std::uint64_t here = name.starts_with("teapot") ? scene->primitives : scene->polygons;
     claim.here = fmt::format("{}", here);
-    claim.verdict = verdict_of(here == published);
+    claim.verdict = tables::verdict_of(here == published);
   }
   return claim;
 }
@@ -53,32 +53,35 @@ std::string level_text(const std::optional<std::uint32_t>& level) {
   return level ? fmt::format("level {}", *level) : "no level";
 }
 
-Claim deep_nodes(std::span<const SceneTrees> scenes) {
-  Claim claim{"nodes of the teapot's octree", "42 % lie in levels 8 to 12", "", Verdict::not_measured};
+tables::Claim deep_nodes(std::span<const SceneTrees> scenes) {
+  tables::Claim claim{"nodes of the teapot's octree", "42 % lie in levels 8 to 12", "",
+                      tables::Verdict::not_measured};
   if (const SceneTrees* scene = find(scenes, pot)) {
     const std::vector<LevelCount>& levels = scene->octree.levels;
     const double share = deep_share(levels.size(), [&](std::size_t l) { return levels[l - 1].nodes(); });
     claim.here = fmt::format("{:.2f} %; 9 objects a leaf were fitted to the 42 %", 100.0 * share);
-    claim.verdict = verdict_of(std::abs(share - 0.42) <= 0.005);
+    claim.verdict = tables::verdict_of(std::abs(share - 0.42) <= 0.005);
   }
   return claim;
 }
 
-Claim first_level(std::span<const SceneTrees> scenes, std::string_view name, double k,
-                  std::uint32_t published) {
-  Claim claim{fmt::format("leaves against other nodes, {}", name == pot ? "teapot" : "19,000 polygons"),
-              fmt::format("more than {:g} times as many first on level {}", k, published), "",
-              Verdict::not_measured};
+tables::Claim first_level(std::span<const SceneTrees> scenes, std::string_view name, double k,
+                          std::uint32_t published) {
+  tables::Claim claim{
+      fmt::format("leaves against other nodes, {}", name == pot ? "teapot" : "19,000 polygons"),
+      fmt::format("more than {:g} times as many first on level {}", k, published), "",
+      tables::Verdict::not_measured};
   if (const SceneTrees* scene = find(scenes, name)) {
     const std::optional<std::uint32_t> level = rule_level(scene->octree.levels, k);
     claim.here = level_text(level);
-    claim.verdict = verdict_of(level == published);
+    claim.verdict = tables::verdict_of(level == published);
   }
   return claim;
 }
 
-Claim bsp_leaves(std::span<const SceneTrees> scenes) {
-  Claim claim{"BSP tree against octree", "the BSP tree has fewer leaves", "", Verdict::not_measured};
+tables::Claim bsp_leaves(std::span<const SceneTrees> scenes) {
+  tables::Claim claim{"BSP tree against octree", "the BSP tree has fewer leaves", "",
+                      tables::Verdict::not_measured};
   bool always = true;
   for (const SceneTrees& scene : scenes) {
     const std::uint64_t bsp = scene.bsp.total().leaves;
@@ -88,7 +91,7 @@ Claim bsp_leaves(std::span<const SceneTrees> scenes) {
         (claim.here.empty() ? "" : "; ") + fmt::format("{} {} against {}", scene.scene, bsp, octree);
   }
   if (!scenes.empty()) {
-    claim.verdict = verdict_of(always);
+    claim.verdict = tables::verdict_of(always);
   }
   return claim;
 }
@@ -96,8 +99,9 @@ Claim bsp_leaves(std::span<const SceneTrees> scenes) {
 /// Numbers of nodes are very similar when they differ by at most this share.
 constexpr double very_similar = 0.1;
 
-Claim node_counts(std::span<const SceneTrees> scenes) {
-  Claim claim{"BSP tree against octree", "very similar numbers of nodes", "", Verdict::not_measured};
+tables::Claim node_counts(std::span<const SceneTrees> scenes) {
+  tables::Claim claim{"BSP tree against octree", "very similar numbers of nodes", "",
+                      tables::Verdict::not_measured};
   bool always = true;
   for (const SceneTrees& scene : scenes) {
     const double ratio =
@@ -106,7 +110,7 @@ Claim node_counts(std::span<const SceneTrees> scenes) {
     claim.here += (claim.here.empty() ? "" : "; ") + fmt::format("{} {:.2f} of them", scene.scene, ratio);
   }
   if (!scenes.empty()) {
-    claim.verdict = verdict_of(always);
+    claim.verdict = tables::verdict_of(always);
   }
   return claim;
 }
@@ -120,34 +124,36 @@ std::uint64_t accesses(const TracedRun& run, std::size_t level) {
   return level <= run.visits.per_level.size() ? run.visits.per_level[level - 1] : 0;
 }
 
-Claim deep_accesses(const TracedRun* run) {
-  Claim claim{"accesses to deep levels, teapot", "less than 1 % go to levels 8 to 12", "",
-              Verdict::not_measured};
+tables::Claim deep_accesses(const TracedRun* run) {
+  tables::Claim claim{"accesses to deep levels, teapot", "less than 1 % go to levels 8 to 12", "",
+                      tables::Verdict::not_measured};
   if (run != nullptr) {
     const std::size_t levels = run->visits.per_level.size();
     const double share = deep_share(levels, [&](std::size_t l) { return accesses(*run, l); });
     const double deeper =
         deep_share(levels, [&](std::size_t l) { return l == 8 ? std::uint64_t{0} : accesses(*run, l); });
     claim.here = fmt::format("{:.2f} %; levels 9 to 12 {:.2f} %", 100.0 * share, 100.0 * deeper);
-    claim.verdict = verdict_of(share < 0.01);
+    claim.verdict = tables::verdict_of(share < 0.01);
   }
   return claim;
 }
 
-Claim access_fall(const TracedRun* run) {
-  Claim claim{"accesses by level, teapot", "they fall steeply beyond level 8", "", Verdict::not_measured};
+tables::Claim access_fall(const TracedRun* run) {
+  tables::Claim claim{"accesses by level, teapot", "they fall steeply beyond level 8", "",
+                      tables::Verdict::not_measured};
   if (run != nullptr && accesses(*run, 8) != 0) {
     const auto peak = std::max_element(run->visits.per_level.begin(), run->visits.per_level.end());
     const double left = static_cast<double>(accesses(*run, 9)) / static_cast<double>(accesses(*run, 8));
     claim.here = fmt::format("most on level {}; level 9 has {:.1f} % of the accesses of level 8",
                              peak - run->visits.per_level.begin() + 1, 100.0 * left);
-    claim.verdict = verdict_of(left < 0.5);
+    claim.verdict = tables::verdict_of(left < 0.5);
   }
   return claim;
 }
 
-Claim access_drop(const TracedRun* run) {
-  Claim claim{"accesses by level, teapot", "they drop after level 5", "", Verdict::not_measured};
+tables::Claim access_drop(const TracedRun* run) {
+  tables::Claim claim{"accesses by level, teapot", "they drop after level 5", "",
+                      tables::Verdict::not_measured};
   if (run != nullptr && accesses(*run, 5) != 0) {
     bool drop = true;
     for (std::size_t level = 5; level < run->visits.per_level.size(); ++level) {
@@ -157,22 +163,22 @@ Claim access_drop(const TracedRun* run) {
     claim.here = fmt::format(
         "level 6 has {:.1f} % of the accesses of level 5, and {} level below it more than the one above",
         100.0 * left, drop ? "no" : "some");
-    claim.verdict = verdict_of(drop && left < 1.0);
+    claim.verdict = tables::verdict_of(drop && left < 1.0);
   }
   return claim;
 }
 
 /// Arithmetic, comparisons and operations on integers of a frame of triangles, by the mean of each step.
 double operations(const TracedRun& run) {
-  const processors::OperationMixes& mixes = processors::operation_mixes(run.log->traversal);
-  const processors::LogTotals& steps = run.totals;
+  const processors::cost::OperationMixes& mixes = processors::cost::operation_mixes(run.log->traversal);
+  const processors::program::LogTotals& steps = run.totals;
   double thousandths = 0.0;
-  const auto add = [&](std::uint64_t count, const processors::OperationMix& mix) {
+  const auto add = [&](std::uint64_t count, const processors::cost::OperationMix& mix) {
     thousandths +=
         static_cast<double>(count) * static_cast<double>(mix.add + mix.multiply + mix.divide +
                                                          mix.square_root + mix.compare + mix.integer);
   };
-  for (std::size_t kind = 0; kind < processors::ray_kinds; ++kind) {
+  for (std::size_t kind = 0; kind < processors::program::ray_kinds; ++kind) {
     add(steps.rays[kind], mixes.ray[kind]);
   }
   add(steps.branches, mixes.branch);
@@ -186,16 +192,17 @@ double operations(const TracedRun& run) {
 
 /// The paper does not name the scene; the claim agrees when the second teapot takes within a quarter of the
 /// paper's number.
-Claim frame_operations(std::span<const TracedRun> runs) {
+tables::Claim frame_operations(std::span<const TracedRun> runs) {
   constexpr double published = 900e6;
   constexpr double pixels = 1024.0 * 1024.0;
-  Claim claim{"operations of a 1024 x 1024 frame", "about 900 million", "", Verdict::not_measured};
+  tables::Claim claim{"operations of a 1024 x 1024 frame", "about 900 million", "",
+                      tables::Verdict::not_measured};
   for (const TracedRun& run : runs) {
     const double scaled = operations(run) * pixels / (static_cast<double>(run.log->width) * run.log->height);
     claim.here +=
         (claim.here.empty() ? "" : "; ") + fmt::format("{}: {:.0f} million", name_of(run.run), scaled / 1e6);
     if (&run == find_pot(runs)) {
-      claim.verdict = verdict_of(std::abs(scaled / published - 1.0) <= 0.25);
+      claim.verdict = tables::verdict_of(std::abs(scaled / published - 1.0) <= 0.25);
     }
   }
   return claim;
@@ -210,10 +217,11 @@ std::uint32_t last_rise(const TracedRun& run) {
   return static_cast<std::uint32_t>(level);
 }
 
-Claim worst_case(std::span<const TracedRun> runs) {
-  Claim claim{"where accesses begin to fall",
-              "at the latest below the level on which L > 3 (B + P), if a ray enters at most four children",
-              "", Verdict::not_measured};
+tables::Claim worst_case(std::span<const TracedRun> runs) {
+  tables::Claim claim{
+      "where accesses begin to fall",
+      "at the latest below the level on which L > 3 (B + P), if a ray enters at most four children", "",
+      tables::Verdict::not_measured};
   bool always = true;
   for (const TracedRun& run : runs) {
     const std::uint32_t fall = last_rise(run);
@@ -224,7 +232,7 @@ Claim worst_case(std::span<const TracedRun> runs) {
                   fmt::format("{}: below level {}, rule at {}", name_of(run.run), fall, bound);
   }
   if (!runs.empty()) {
-    claim.verdict = verdict_of(always);
+    claim.verdict = tables::verdict_of(always);
   }
   return claim;
 }
@@ -236,9 +244,10 @@ constexpr double recommended = 10.0;
 /// 19,000 polygons decides: it agrees when that saves as much as the paper says by the rule, in part when
 /// only by another initial level.
 template <class Value>
-Claim saving(std::span<const RunOutcomes> runs, std::string_view what, double published, const Value& value) {
-  Claim claim{fmt::format("{} saved by building on demand", what), fmt::format("{:.0f} %", 100.0 * published),
-              "", Verdict::not_measured};
+tables::Claim saving(std::span<const RunOutcomes> runs, std::string_view what, double published,
+                     const Value& value) {
+  tables::Claim claim{fmt::format("{} saved by building on demand", what),
+                      fmt::format("{:.0f} %", 100.0 * published), "", tables::Verdict::not_measured};
   double largest = -1.0;
   double by_rule = -1.0;
   for (const RunOutcomes& run : runs) {
@@ -257,9 +266,9 @@ Claim saving(std::span<const RunOutcomes> runs, std::string_view what, double pu
     largest = run.run.scene == large ? std::max(largest, most) : largest;
   }
   if (largest >= 0.0) {
-    claim.verdict = by_rule >= published   ? Verdict::agrees
-                    : largest >= published ? Verdict::in_part
-                                           : Verdict::differs;
+    claim.verdict = by_rule >= published   ? tables::Verdict::agrees
+                    : largest >= published ? tables::Verdict::in_part
+                                           : tables::Verdict::differs;
   }
   return claim;
 }
@@ -269,8 +278,9 @@ double longer(sim::Ticks time, sim::Ticks whole) {
 }
 
 /// No frame takes more than 1 % longer, the building included.
-Claim penalty(std::span<const RunOutcomes> runs) {
-  Claim claim{"time with k = 10 against the whole tree", "no significant penalty", "", Verdict::not_measured};
+tables::Claim penalty(std::span<const RunOutcomes> runs) {
+  tables::Claim claim{"time with k = 10 against the whole tree", "no significant penalty", "",
+                      tables::Verdict::not_measured};
   bool always = true;
   for (const RunOutcomes& run : runs) {
     if (const LevelOutcome* rule = run.by_rule(recommended)) {
@@ -283,14 +293,15 @@ Claim penalty(std::span<const RunOutcomes> runs) {
     }
   }
   if (!claim.here.empty()) {
-    claim.verdict = verdict_of(always);
+    claim.verdict = tables::verdict_of(always);
   }
   return claim;
 }
 
 /// The frame after the build takes at most 1 % longer with any initial level beyond 8.
-Claim alike_beyond(std::span<const RunOutcomes> runs) {
-  Claim claim{"rendering by initial level", "alike beyond level 8", "", Verdict::not_measured};
+tables::Claim alike_beyond(std::span<const RunOutcomes> runs) {
+  tables::Claim claim{"rendering by initial level", "alike beyond level 8", "",
+                      tables::Verdict::not_measured};
   bool always = true;
   for (const RunOutcomes& run : runs) {
     double most = -1.0;
@@ -307,14 +318,14 @@ Claim alike_beyond(std::span<const RunOutcomes> runs) {
                   fmt::format("{}: at most {:+.2f} %", name_of(run.run), 100.0 * most);
   }
   if (!claim.here.empty()) {
-    claim.verdict = verdict_of(always);
+    claim.verdict = tables::verdict_of(always);
   }
   return claim;
 }
 
 }  // namespace
 
-std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
+std::vector<tables::Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
   return {polygons(scenes, "gears:2", 1169),
           polygons(scenes, "teapot:4:pot", 980),
           polygons(scenes, pot, 9120),
@@ -327,16 +338,16 @@ std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
           first_level(scenes, large, 10.0, 8)};
 }
 
-std::vector<Claim> check_access_claims(std::span<const TracedRun> runs) {
+std::vector<tables::Claim> check_access_claims(std::span<const TracedRun> runs) {
   const TracedRun* run = find_pot(runs);
   return {deep_accesses(run), access_drop(run), access_fall(run), worst_case(runs), frame_operations(runs)};
 }
 
-std::vector<Claim> check_build_claims(std::span<const RunOutcomes> runs) {
+std::vector<tables::Claim> check_build_claims(std::span<const RunOutcomes> runs) {
   return {saving(runs, "memory", 0.45, [](const LevelOutcome& level) { return level.bytes; }),
           saving(runs, "time for building", 0.2,
                  [](const LevelOutcome& level) { return static_cast<std::uint64_t>(level.building()); }),
           penalty(runs), alike_beyond(runs)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

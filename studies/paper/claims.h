@@ -9,14 +9,14 @@
 #include "studies/paper/tree_table.h"
 #include "studies/tables/claim.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// The claims about trees and accesses. A claim about a scene that the study did not measure has the verdict
 /// not_measured.
-[[nodiscard]] std::vector<Claim> check_tree_claims(std::span<const SceneTrees> scenes);
-[[nodiscard]] std::vector<Claim> check_access_claims(std::span<const TracedRun> runs);
+[[nodiscard]] std::vector<tables::Claim> check_tree_claims(std::span<const SceneTrees> scenes);
+[[nodiscard]] std::vector<tables::Claim> check_access_claims(std::span<const TracedRun> runs);
 
 /// The claims about trees that are built while they are used.
-[[nodiscard]] std::vector<Claim> check_build_claims(std::span<const RunOutcomes> runs);
+[[nodiscard]] std::vector<tables::Claim> check_build_claims(std::span<const RunOutcomes> runs);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -4,12 +4,12 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
-Task task_of(processors::Activity activity) {
-  using processors::Activity;
+Task task_of(processors::cost::Activity activity) {
+  using processors::cost::Activity;
   switch (activity) {
     case Activity::building:
       return Task::build;
@@ -44,47 +44,49 @@ double share(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-TaskTimes tasks_of(const processors::TimeDivision& time) {
+TaskTimes tasks_of(const processors::cost::TimeDivision& time) {
   TaskTimes sums{};
   for (std::size_t i = 0; i < time.size(); ++i) {
-    sim::Ticks& sum = sums[static_cast<std::size_t>(task_of(static_cast<processors::Activity>(i)))];
+    sim::Ticks& sum = sums[static_cast<std::size_t>(task_of(static_cast<processors::cost::Activity>(i)))];
     sum = sim::add_ticks(sum, time[i]);
   }
   return sums;
 }
 
-Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times) {
+tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times) {
   sim::ensure(runs.size() == times.size(), "figure 1 needs the times of every run");
-  Table table("figure1", "Figure 1: time by task, the whole tree being built before the frame",
-              {{"run", ColumnType::text, "", "scene and depth of rays"},
-               {"task", ColumnType::text, "", "what the time goes to"},
-               {"rank", ColumnType::integer, "1", "order of the tasks"},
-               {"time", ColumnType::integer, "ps", "time of all nodes together"},
-               {"share", ColumnType::real, "fraction", "share of the time of all nodes together"}});
+  tables::Table table(
+      "figure1", "Figure 1: time by task, the whole tree being built before the frame",
+      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
+       {"task", tables::ColumnType::text, "", "what the time goes to"},
+       {"rank", tables::ColumnType::integer, "1", "order of the tasks"},
+       {"time", tables::ColumnType::integer, "ps", "time of all nodes together"},
+       {"share", tables::ColumnType::real, "fraction", "share of the time of all nodes together"}});
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto all =
         static_cast<std::uint64_t>(std::accumulate(times[i].begin(), times[i].end(), sim::Ticks{0}));
     for (std::size_t task = 0; task < tasks; ++task) {
       const sim::Ticks time = times[i][task];
-      table.add_row({name_of(runs[i].run), std::string(task_names[task]), count_cell(task), time,
+      table.add_row({name_of(runs[i].run), std::string(task_names[task]), tables::count_cell(task), time,
                      share(static_cast<std::uint64_t>(time), all)});
     }
   }
   return table;
 }
 
-Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout) {
-  Table table("figure2", "Figure 2: memory by level",
-              {{"run", ColumnType::text, "", "scene and depth of rays"},
-               {"tree", ColumnType::text, "",
-                "whole: built before the frame; on demand: only what the frame's rays needed"},
-               {"level", ColumnType::integer, "1", "level, the root's being 1"},
-               {"branches", ColumnType::integer, "1", "B"},
-               {"leaves", ColumnType::integer, "1", "L"},
-               {"partial", ColumnType::integer, "1", "P: nodes left undivided"},
-               {"entries", ColumnType::integer, "1", "triangles in the lists of leaves and partial nodes"},
-               {"bytes", ColumnType::integer, "byte", "records and lists of the level"},
-               {"share", ColumnType::real, "fraction", "share of the whole tree's bytes"}});
+tables::Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout) {
+  tables::Table table(
+      "figure2", "Figure 2: memory by level",
+      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
+       {"tree", tables::ColumnType::text, "",
+        "whole: built before the frame; on demand: only what the frame's rays needed"},
+       {"level", tables::ColumnType::integer, "1", "level, the root's being 1"},
+       {"branches", tables::ColumnType::integer, "1", "B"},
+       {"leaves", tables::ColumnType::integer, "1", "L"},
+       {"partial", tables::ColumnType::integer, "1", "P: nodes left undivided"},
+       {"entries", tables::ColumnType::integer, "1", "triangles in the lists of leaves and partial nodes"},
+       {"bytes", tables::ColumnType::integer, "byte", "records and lists of the level"},
+       {"share", tables::ColumnType::real, "fraction", "share of the whole tree's bytes"}});
   for (const TracedRun& run : runs) {
     const std::uint64_t whole = bytes_of(run.levels, layout);
     const std::vector<LevelCount> lazy = count_lazy_levels(run.log->topology, run.visits.touched, 1);
@@ -92,38 +94,39 @@ Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& 
       const std::vector<LevelCount>& levels = on_demand ? lazy : run.levels;
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const std::uint64_t bytes = bytes_of(levels[i], layout);
-        table.add_row({name_of(run.run), on_demand ? "on demand" : "whole", count_cell(i + 1),
-                       count_cell(levels[i].branches), count_cell(levels[i].leaves),
-                       count_cell(levels[i].partial),
-                       count_cell(levels[i].leaf_entries + levels[i].partial_entries), count_cell(bytes),
-                       share(bytes, whole)});
+        table.add_row({name_of(run.run), on_demand ? "on demand" : "whole", tables::count_cell(i + 1),
+                       tables::count_cell(levels[i].branches), tables::count_cell(levels[i].leaves),
+                       tables::count_cell(levels[i].partial),
+                       tables::count_cell(levels[i].leaf_entries + levels[i].partial_entries),
+                       tables::count_cell(bytes), share(bytes, whole)});
       }
     }
   }
   return table;
 }
 
-Table access_table(std::span<const TracedRun> runs) {
-  Table table("figure3", "Figure 3: accesses by level",
-              {{"run", ColumnType::text, "", "scene and depth of rays"},
-               {"level", ColumnType::integer, "1", "level, the root's being 1"},
-               {"accesses", ColumnType::integer, "1", "visits of nodes of the level, by all rays"},
-               {"share", ColumnType::real, "fraction", "share of all visits"},
-               {"tests", ColumnType::integer, "1", "triangles tested in the level's leaves"},
-               {"nodes", ColumnType::integer, "1", "nodes of the level in the whole tree"},
-               {"untouched", ColumnType::integer, "1", "of these, nodes that no ray visited"}});
+tables::Table access_table(std::span<const TracedRun> runs) {
+  tables::Table table(
+      "figure3", "Figure 3: accesses by level",
+      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
+       {"level", tables::ColumnType::integer, "1", "level, the root's being 1"},
+       {"accesses", tables::ColumnType::integer, "1", "visits of nodes of the level, by all rays"},
+       {"share", tables::ColumnType::real, "fraction", "share of all visits"},
+       {"tests", tables::ColumnType::integer, "1", "triangles tested in the level's leaves"},
+       {"nodes", tables::ColumnType::integer, "1", "nodes of the level in the whole tree"},
+       {"untouched", tables::ColumnType::integer, "1", "of these, nodes that no ray visited"}});
   for (const TracedRun& run : runs) {
     const NodeVisits& visits = run.visits;
     const std::uint64_t all =
         std::accumulate(visits.per_level.begin(), visits.per_level.end(), std::uint64_t{0});
     for (std::size_t i = 0; i < visits.per_level.size(); ++i) {
       const std::uint64_t nodes = run.levels[i].nodes();
-      table.add_row({name_of(run.run), count_cell(i + 1), count_cell(visits.per_level[i]),
-                     share(visits.per_level[i], all), count_cell(visits.tests[i]), count_cell(nodes),
-                     count_cell(nodes - visits.distinct[i])});
+      table.add_row({name_of(run.run), tables::count_cell(i + 1), tables::count_cell(visits.per_level[i]),
+                     share(visits.per_level[i], all), tables::count_cell(visits.tests[i]),
+                     tables::count_cell(nodes), tables::count_cell(nodes - visits.distinct[i])});
     }
   }
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

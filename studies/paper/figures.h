@@ -10,7 +10,7 @@
 #include "studies/paper/traced_run.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// The tasks of figure 1.
 enum class Task : std::uint8_t { build, traversal, intersection, shading, memory, other };
@@ -21,16 +21,16 @@ using TaskTimes = std::array<sim::Ticks, tasks>;
 
 /// The nodes' activities gathered by task: cache, interconnect and banks are memory; waiting for the host,
 /// for locks and messages, and idling are other.
-[[nodiscard]] TaskTimes tasks_of(const processors::TimeDivision& time);
+[[nodiscard]] TaskTimes tasks_of(const processors::cost::TimeDivision& time);
 
 /// "figure1": time by task. One row for each run and task; times[i] is of runs[i].
-[[nodiscard]] Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times);
+[[nodiscard]] tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times);
 
 /// "figure2": nodes and memory by level, for the whole tree and for the one that a frame leaves when nothing
 /// but the root was built before it. One row for each run, tree and level.
-[[nodiscard]] Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout);
+[[nodiscard]] tables::Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout);
 
 /// "figure3": node accesses by level. One row for each run and level.
-[[nodiscard]] Table access_table(std::span<const TracedRun> runs);
+[[nodiscard]] tables::Table access_table(std::span<const TracedRun> runs);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -12,7 +12,7 @@
 #include "studies/host/image_file.h"
 #include "studies/run/open_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
@@ -29,7 +29,7 @@ const accel::LazyOctree& lazy(const accel::Structure& structure) {
 }
 
 void measure_once(const scenes::Scene& scene, const std::shared_ptr<const accel::TriangleSet>& triangles,
-                  const FrameConfig& frame, HostOutcome& outcome) {
+                  const keys::FrameConfig& frame, HostOutcome& outcome) {
   accel::LazyOctreeOptions options;
   options.tree = frame.structure_options.octree;
   options.initial.level = outcome.initial.whole ? 0 : outcome.initial.level;
@@ -37,7 +37,7 @@ void measure_once(const scenes::Scene& scene, const std::shared_ptr<const accel:
   const std::unique_ptr<accel::Structure> structure = accel::make_lazy_octree(triangles, options);
   outcome.build_seconds = std::min(outcome.build_seconds, seconds_since(begin));
   const Clock::time_point built = Clock::now();
-  static_cast<void>(processors::render(scene, *triangles, *structure, frame.render));
+  static_cast<void>(processors::program::render(scene, *triangles, *structure, frame.render));
   outcome.render_seconds = std::min(outcome.render_seconds, seconds_since(built));
   const accel::LazyOctreeState state = lazy(*structure).state();
   outcome.nodes = state.all.nodes();
@@ -48,8 +48,8 @@ void measure_once(const scenes::Scene& scene, const std::shared_ptr<const accel:
 }  // namespace
 
 std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun& run) {
-  const FrameConfig frame = config.frame_of(run.run);
-  const scenes::Scene scene = open_frame(frame);
+  const keys::FrameConfig frame = config.frame_of(run.run);
+  const scenes::Scene scene = run::open_frame(frame);
   const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
   std::vector<HostOutcome> outcomes;
   for (InitialLevel& initial : initial_levels(config, run.levels)) {
@@ -64,24 +64,26 @@ std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun
   return outcomes;
 }
 
-Table host_building_table(std::size_t index, const PaperRun& run, std::span<const HostOutcome> outcomes) {
-  Table table(
-      fmt::format("host_table{}", index + 2),
-      fmt::format("Table {} on the host: {}", index + 2, name_of(run)),
-      {{"level", ColumnType::integer, "1", "initial level: its nodes are not divided before the frame"},
-       {"note", ColumnType::text, "", "rules that choose the level"},
-       {"build", ColumnType::real, "s", "building to the initial level"},
-       {"render", ColumnType::real, "s", "the frame, building on demand included"},
-       {"total", ColumnType::real, "s", "both"},
-       {"nodes", ColumnType::integer, "1", "nodes that the frame leaves"},
-       {"partial", ColumnType::integer, "1", "of these, nodes left partially built"},
-       {"memory", ColumnType::integer, "byte", "host memory of nodes and lists"}});
+tables::Table host_building_table(std::size_t index, const PaperRun& run,
+                                  std::span<const HostOutcome> outcomes) {
+  tables::Table table(fmt::format("host_table{}", index + 2),
+                      fmt::format("Table {} on the host: {}", index + 2, name_of(run)),
+                      {{"level", tables::ColumnType::integer, "1",
+                        "initial level: its nodes are not divided before the frame"},
+                       {"note", tables::ColumnType::text, "", "rules that choose the level"},
+                       {"build", tables::ColumnType::real, "s", "building to the initial level"},
+                       {"render", tables::ColumnType::real, "s", "the frame, building on demand included"},
+                       {"total", tables::ColumnType::real, "s", "both"},
+                       {"nodes", tables::ColumnType::integer, "1", "nodes that the frame leaves"},
+                       {"partial", tables::ColumnType::integer, "1", "of these, nodes left partially built"},
+                       {"memory", tables::ColumnType::integer, "byte", "host memory of nodes and lists"}});
   for (const HostOutcome& outcome : outcomes) {
-    table.add_row({count_cell(outcome.initial.level), outcome.initial.note(), outcome.build_seconds,
+    table.add_row({tables::count_cell(outcome.initial.level), outcome.initial.note(), outcome.build_seconds,
                    outcome.render_seconds, outcome.build_seconds + outcome.render_seconds,
-                   count_cell(outcome.nodes), count_cell(outcome.partial), count_cell(outcome.bytes)});
+                   tables::count_cell(outcome.nodes), tables::count_cell(outcome.partial),
+                   tables::count_cell(outcome.bytes)});
   }
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -9,7 +9,7 @@
 #include "studies/paper/traced_run.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// One initial level. Seconds are the least of the configured number of repetitions.
 struct HostOutcome {
@@ -25,7 +25,7 @@ struct HostOutcome {
 [[nodiscard]] std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun& run);
 
 /// "host_table2" for the first run, and so on.
-[[nodiscard]] Table host_building_table(std::size_t index, const PaperRun& run,
-                                        std::span<const HostOutcome> outcomes);
+[[nodiscard]] tables::Table host_building_table(std::size_t index, const PaperRun& run,
+                                                std::span<const HostOutcome> outcomes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

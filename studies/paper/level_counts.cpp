@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
@@ -91,16 +91,17 @@ std::optional<std::uint32_t> rule_level(std::span<const LevelCount> levels, doub
   return std::nullopt;
 }
 
-NodeVisits count_visits(const processors::WorkLog& log) {
-  using processors::Step;
+NodeVisits count_visits(const processors::program::WorkLog& log) {
+  using processors::program::Step;
   const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
   NodeVisits visits;
   visits.touched.assign(nodes.size(), 0);
-  for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
+  for (const processors::program::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size();
+         at += processors::program::step_words(row.words.data() + at)) {
       const std::uint32_t* const word = row.words.data() + at;
-      const Step step = processors::step_of(*word);
-      const std::uint32_t operand = processors::operand_of(*word);
+      const Step step = processors::program::step_of(*word);
+      const std::uint32_t operand = processors::program::operand_of(*word);
       if (step != Step::branch && step != Step::leaf && step != Step::partial_leaf &&
           step != Step::mailed_leaf) {
         continue;
@@ -112,7 +113,7 @@ NodeVisits count_visits(const processors::WorkLog& log) {
       } else if (step == Step::partial_leaf) {
         grown(visits.tests, node.level) += word[1];
       } else if (step == Step::mailed_leaf) {
-        grown(visits.tests, node.level) += processors::tests_of_mask(word + 2, word[1]);
+        grown(visits.tests, node.level) += processors::program::tests_of_mask(word + 2, word[1]);
       }
       visits.touched[operand] = 1;
     }
@@ -140,4 +141,4 @@ std::uint64_t bytes_of(std::span<const LevelCount> levels, const memory::LayoutC
   return bytes;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -11,7 +11,7 @@
 #include "memory/layout.h"
 #include "processors/program/work_log.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// The nodes of one level: B branches, L leaves, and P partially built nodes, which list their triangles and
 /// have not been divided yet.
@@ -50,10 +50,10 @@ struct NodeVisits {
   std::vector<std::uint64_t> distinct;   ///< nodes of the level visited at least once
   std::vector<std::uint8_t> touched;     ///< for each node: visited at least once
 };
-[[nodiscard]] NodeVisits count_visits(const processors::WorkLog& log);
+[[nodiscard]] NodeVisits count_visits(const processors::program::WorkLog& log);
 
 /// Bytes of a level in the database: records of nodes and the lists of leaves and partially built nodes.
 [[nodiscard]] std::uint64_t bytes_of(const LevelCount& level, const memory::LayoutConfig& layout);
 [[nodiscard]] std::uint64_t bytes_of(std::span<const LevelCount> levels, const memory::LayoutConfig& layout);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -26,7 +26,7 @@
 #include "studies/tables/text_units.h"
 #include "studies/tables/wide_table.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
@@ -34,17 +34,19 @@ namespace {
 scenes::Scene open(const sim::Config& config, const PaperConfig& paper, const std::string& name,
                    std::string_view key) {
   try {
-    return scenes::open_scene(name, paper.frame.open, decode_image);
+    return scenes::open_scene(name, paper.frame.open, host::decode_image);
   } catch (const sim::UserError& error) {
     config.fail(key, error.what());
   }
 }
 
 /// "scenes": every scene of the study.
-Table scene_table(const sim::Config& config, const PaperConfig& paper, std::span<const SceneTrees> trees) {
-  Table table("scenes", "The scenes",
-              {{"scene", ColumnType::text, "", "scene"},
-               {"hash", ColumnType::text, "", "hash of vertices, triangles, materials, lights and camera"}});
+tables::Table scene_table(const sim::Config& config, const PaperConfig& paper,
+                          std::span<const SceneTrees> trees) {
+  tables::Table table(
+      "scenes", "The scenes",
+      {{"scene", tables::ColumnType::text, "", "scene"},
+       {"hash", tables::ColumnType::text, "", "hash of vertices, triangles, materials, lights and camera"}});
   std::set<std::string> known;
   for (const SceneTrees& scene : trees) {
     known.insert(scene.scene);
@@ -52,7 +54,7 @@ Table scene_table(const sim::Config& config, const PaperConfig& paper, std::span
   }
   for (const PaperRun& run : paper.runs) {
     if (known.insert(run.scene).second) {
-      const std::uint64_t hash = scene_hash(open(config, paper, run.scene, "paper.run_scenes"));
+      const std::uint64_t hash = run::scene_hash(open(config, paper, run.scene, "paper.run_scenes"));
       table.add_row({run.scene, fmt::format("{:016x}", hash)});
     }
   }
@@ -67,31 +69,33 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
       "images   {} x {}\n"
       "machine  {} at {}, operations as \"{}\"\n",
       octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,
-      counted(paper.machine.all_nodes(), "node"), sim::print_frequency(config.frequency("node.clock")),
-      config.choice_name("costs.preset"));
+      tables::counted(paper.machine.all_nodes(), "node"),
+      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
 }
 
 /// The tables for people: those with a row for each level get a column for each level instead. Left out are
 /// the claims, which have a text of their own, and the table behind a chart, which repeats others.
-std::string text_of_tables(std::span<const Table> tables) {
+std::string text_of_tables(std::span<const tables::Table> tables) {
   std::string text;
-  for (const Table& table : tables) {
+  for (const tables::Table& table : tables) {
     const std::string& name = table.name();
     if (name == "claims" || name == "initial_levels") {
       continue;
     }
     text += "\n";
     if (name == "rules") {
-      text += text_of(widen(table, std::array{std::string_view("scene")}, "level", "l", "ratio"));
+      text +=
+          tables::text_of(tables::widen(table, std::array{std::string_view("scene")}, "level", "l", "ratio"));
     } else if (name == "figure1") {
-      text += text_of(widen(table, std::array{std::string_view("run")}, "task", "", "share"));
+      text += tables::text_of(tables::widen(table, std::array{std::string_view("run")}, "task", "", "share"));
     } else if (name == "figure2") {
-      text += text_of(
-          widen(table, std::array{std::string_view("run"), std::string_view("tree")}, "level", "l", "bytes"));
+      text += tables::text_of(tables::widen(
+          table, std::array{std::string_view("run"), std::string_view("tree")}, "level", "l", "bytes"));
     } else if (name == "figure3") {
-      text += text_of(widen(table, std::array{std::string_view("run")}, "level", "l", "share"));
+      text +=
+          tables::text_of(tables::widen(table, std::array{std::string_view("run")}, "level", "l", "share"));
     } else {
-      text += text_of(table);
+      text += tables::text_of(table);
     }
   }
   return text;
@@ -99,7 +103,7 @@ std::string text_of_tables(std::span<const Table> tables) {
 
 }  // namespace
 
-StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
+tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   PaperConfig paper = read_paper(config);
   paper.frame.meter = meter;
   const memory::LayoutConfig& layout = paper.machine.layout;
@@ -112,7 +116,7 @@ StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
         measure_trees(name, open(config, paper, name, "paper.scenes"), paper.frame.structure_options));
     sim::count_step(meter);
   }
-  Table scenes = scene_table(config, paper, trees);
+  tables::Table scenes = scene_table(config, paper, trees);
 
   std::vector<TracedRun> runs;
   for (const PaperRun& run : paper.runs) {
@@ -124,13 +128,13 @@ StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
     times.push_back(tasks_of(run.whole().time));
   }
 
-  std::vector<Claim> claims = check_tree_claims(trees);
-  for (const std::vector<Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {
+  std::vector<tables::Claim> claims = check_tree_claims(trees);
+  for (const std::vector<tables::Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {
     claims.insert(claims.end(), more.begin(), more.end());
   }
 
-  StudyOutput output;
-  std::vector<Table>& tables = output.tables;
+  tables::StudyOutput output;
+  std::vector<tables::Table>& tables = output.tables;
   tables = {tree_table(trees, layout), rule_table(trees), rule_level_table(trees, paper.rules)};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     tables.push_back(building_table(i, outcomes[i]));
@@ -140,20 +144,20 @@ StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   tables.push_back(task_table(runs, times));
   tables.push_back(memory_table(runs, layout));
   tables.push_back(access_table(runs));
-  tables.push_back(claim_table(claims));
-  output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + text_of(claims);
+  tables.push_back(tables::claim_table(claims));
+  output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + tables::text_of(claims);
   output.tables.push_back(std::move(scenes));
-  output.tables.push_back(provenance_table(config.effective_values()));
-  output.host_tables = {host_tree_table(trees), host_table()};
+  output.tables.push_back(tables::provenance_table(config.effective_values()));
+  output.host_tables = {host_tree_table(trees), tables::host_table()};
   sim::begin_part(meter, "measuring trees on this computer", "runs", runs.size());
   for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
     output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
     sim::count_step(meter);
   }
-  for (const Table& table : output.host_tables) {
-    output.host_report += (output.host_report.empty() ? "" : "\n") + text_of(table);
+  for (const tables::Table& table : output.host_tables) {
+    output.host_report += (output.host_report.empty() ? "" : "\n") + tables::text_of(table);
   }
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -6,11 +6,11 @@
 #include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// Runs the whole study. Throws UserError for anything wrong with the input. The reproducible tables and the
 /// report do not depend on the number of host threads.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -7,7 +7,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 namespace {
 
@@ -53,8 +53,8 @@ std::vector<PaperRun> read_runs(const sim::Config& config) {
 
 std::string name_of(const PaperRun& run) { return run.scene + " at depth " + std::to_string(run.depth); }
 
-FrameConfig PaperConfig::frame_of(const PaperRun& run) const {
-  FrameConfig own = frame;
+keys::FrameConfig PaperConfig::frame_of(const PaperRun& run) const {
+  keys::FrameConfig own = frame;
   own.scene = run.scene;
   own.render.max_depth = run.depth;
   return own;
@@ -68,7 +68,7 @@ void declare_paper_keys(sim::Schema& schema) {
                "scenes whose octree and BSP tree are compared (table 1)");
   schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot", "large"},
                "scenes to render with trees built to several initial levels (tables 2 onwards)");
-  schema.integers("paper.run_depths", {2, 2, 4, 2}, {1, processors::max_ray_depth}, "rays",
+  schema.integers("paper.run_depths", {2, 2, 4, 2}, {1, processors::program::max_ray_depth}, "rays",
                   "longest chain of rays in each of them, the eye ray being 1");
   schema.integers(
       "paper.levels", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {1, 21}, "",
@@ -83,7 +83,7 @@ void declare_paper_keys(sim::Schema& schema) {
 }
 
 sim::Schema paper_schema() {
-  sim::Schema schema = run_schema();
+  sim::Schema schema = run::run_schema();
   declare_paper_keys(schema);
   return schema;
 }
@@ -95,27 +95,27 @@ PaperConfig read_paper(sim::Config& config) {
       config.fail(own.key, "the study sets it itself, from " + std::string(own.from));
     }
   }
-  paper.frame = read_frame(config);
+  paper.frame = keys::read_frame(config);
   if (paper.frame.render.voxel_cut > 0.0) {
     config.fail("image.voxel_cut", "the study renders exact images");
   }
   if (paper.frame.structure != "octree") {
     config.fail("structure.kind", "the study builds octrees, and BSP trees beside them");
   }
-  paper.machine = read_machine(config);
-  if (paper.machine.placement != processors::Placement::shared) {
+  paper.machine = keys::read_machine(config);
+  if (paper.machine.placement != processors::machine::Placement::shared) {
     config.fail("database.placement", "the study builds one tree that all nodes share");
   }
   if (paper.machine.banks.dram) {
     config.fail("memory.model", "the paper's machines have banks whose accesses all take the same time");
   }
-  if (processors::writes_done_later(paper.machine)) {
+  if (processors::machine::writes_done_later(paper.machine)) {
     config.fail("interconnect.arbitration",
                 "the study builds one tree that all nodes share: it must be fifo");
   }
-  processors::MachineConfig building = paper.machine;
-  building.build.sharing = processors::Sharing::shared;
-  check_machine(config, building);
+  processors::machine::MachineConfig building = paper.machine;
+  building.build.sharing = processors::machine::Sharing::shared;
+  keys::check_machine(config, building);
   paper.scenes = config.texts("paper.scenes");
   if (paper.scenes.empty()) {
     config.fail("paper.scenes", "must name a scene");
@@ -134,4 +134,4 @@ PaperConfig read_paper(sim::Config& config) {
   return paper;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

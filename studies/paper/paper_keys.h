@@ -10,7 +10,7 @@
 #include "sim/schema.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 /// One of the machines whose tree is built while it is used: tables 2 to 5 of the paper.
 struct PaperRun {
@@ -24,8 +24,8 @@ struct PaperRun {
 [[nodiscard]] std::string name_of(const PaperRun& run);
 
 struct PaperConfig {
-  FrameConfig frame;  ///< what all runs share; scene and depth are a run's own
-  processors::MachineConfig machine;
+  keys::FrameConfig frame;  ///< what all runs share; scene and depth are a run's own
+  processors::machine::MachineConfig machine;
   std::vector<std::string> scenes;     ///< of table 1
   std::vector<PaperRun> runs;          ///< of tables 2 onwards, one each
   std::vector<std::uint32_t> levels;   ///< initial levels to try, ascending, each once; none beyond max_level
@@ -33,7 +33,7 @@ struct PaperConfig {
   std::uint32_t host_repetitions = 0;  ///< of each measurement on the host; 0: none is made
 
   /// The frame of one run.
-  [[nodiscard]] FrameConfig frame_of(const PaperRun& run) const;
+  [[nodiscard]] keys::FrameConfig frame_of(const PaperRun& run) const;
 };
 
 void declare_paper_keys(sim::Schema& schema);
@@ -45,4 +45,4 @@ void declare_paper_keys(sim::Schema& schema);
 /// or do not match; a key of a run that this study sets itself.
 [[nodiscard]] PaperConfig read_paper(sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

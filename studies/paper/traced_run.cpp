@@ -2,12 +2,12 @@
 
 #include "studies/run/functional_run.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 TracedRun trace_run(const PaperConfig& config, const PaperRun& run) {
   TracedRun traced;
   traced.run = run;
-  const FunctionalRun functional = run_functional(config.frame_of(run));
+  const run::FunctionalRun functional = run::run_functional(config.frame_of(run));
   traced.totals = functional.totals;
   traced.log = functional.frame.log;
   traced.levels = count_levels(traced.log->topology);
@@ -15,4 +15,4 @@ TracedRun trace_run(const PaperConfig& config, const PaperRun& run) {
   return traced;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

@@ -11,12 +11,12 @@
 #include "studies/paper/level_counts.h"
 #include "studies/paper/paper_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 struct TracedRun {
   PaperRun run;
-  processors::LogTotals totals;
-  std::shared_ptr<const processors::WorkLog> log;
+  processors::program::LogTotals totals;
+  std::shared_ptr<const processors::program::WorkLog> log;
   std::vector<LevelCount> levels;  ///< of the whole tree
   NodeVisits visits;
 };
@@ -24,4 +24,4 @@ struct TracedRun {
 /// Traces one run. Throws UserError as run_functional does.
 [[nodiscard]] TracedRun trace_run(const PaperConfig& config, const PaperRun& run);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

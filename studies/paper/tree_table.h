@@ -13,7 +13,7 @@
 #include "studies/paper/level_counts.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::paper {
 
 struct TreeSize {
   std::vector<LevelCount> levels;
@@ -38,12 +38,14 @@ struct SceneTrees {
                                        const accel::StructureOptions& options);
 
 /// "table1": a row for each tree. "host_table1": the seconds it took to build.
-[[nodiscard]] Table tree_table(std::span<const SceneTrees> scenes, const memory::LayoutConfig& layout);
-[[nodiscard]] Table host_tree_table(std::span<const SceneTrees> scenes);
+[[nodiscard]] tables::Table tree_table(std::span<const SceneTrees> scenes,
+                                       const memory::LayoutConfig& layout);
+[[nodiscard]] tables::Table host_tree_table(std::span<const SceneTrees> scenes);
 
 /// "rules": leaves against other nodes, level by level, of each octree.
-[[nodiscard]] Table rule_table(std::span<const SceneTrees> scenes);
+[[nodiscard]] tables::Table rule_table(std::span<const SceneTrees> scenes);
 /// "rule_levels": the first level at which each rule stops.
-[[nodiscard]] Table rule_level_table(std::span<const SceneTrees> scenes, std::span<const double> rules);
+[[nodiscard]] tables::Table rule_level_table(std::span<const SceneTrees> scenes,
+                                             std::span<const double> rules);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::paper

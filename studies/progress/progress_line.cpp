@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace marti::studies {
+namespace marti::studies::progress {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::string progress_bar(std::uint64_t done, std::uint64_t of, std::size_t width
   return "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::progress

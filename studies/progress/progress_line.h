@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace marti::studies {
+namespace marti::studies::progress {
 
 class ProgressLine {
  public:
@@ -50,4 +50,4 @@ class ProgressLine {
 /// The width of bars on terminals.
 inline constexpr std::size_t usual_bar = 24;
 
-}  // namespace marti::studies
+}  // namespace marti::studies::progress

@@ -7,7 +7,7 @@
 
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::progress {
 
 ShownMeter::ShownMeter(const sim::WorkMeter& meter) {
   if (errors_go_to_a_terminal()) {
@@ -15,7 +15,7 @@ ShownMeter::ShownMeter(const sim::WorkMeter& meter) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
       return meter_text(meter.state(), passed.count());
     });
-    at_signal_.emplace([this](int /*signal*/) { line_->end(); }, AtSignal::Then::signal);
+    at_signal_.emplace([this](int /*signal*/) { line_->end(); }, host::AtSignal::Then::signal);
   }
 }
 
@@ -23,7 +23,7 @@ std::string meter_text(const sim::WorkMeter::State& state, double seconds) {
   if (state.part.empty()) {
     return "";
   }
-  const std::string passed = duration_text(seconds);
+  const std::string passed = tables::duration_text(seconds);
   if (state.of == 0) {
     return fmt::format("{}, {}", state.part, passed);
   }
@@ -32,4 +32,4 @@ std::string meter_text(const sim::WorkMeter::State& state, double seconds) {
          fmt::format("{}: {} of {} {}, {}", state.part, done, state.of, state.unit, passed);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::progress

@@ -17,7 +17,7 @@
 #include "studies/tables/pending_files.h"
 #include "studies/tables/result_directory.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 // DIR/report.html, or DIR/point-N.html.
 fs::path page_of(const std::string& results) {
   std::error_code ignored;
-  const std::optional<PointName> point =
-      fs::is_directory(results, ignored) ? std::nullopt : point_named(results);
-  return point ? directory_of(point->store) / ("point-" + std::to_string(point->ordinal) + ".html")
+  const std::optional<tables::PointName> point =
+      fs::is_directory(results, ignored) ? std::nullopt : tables::point_named(results);
+  return point ? tables::directory_of(point->store) / ("point-" + std::to_string(point->ordinal) + ".html")
                : fs::path(results) / "report.html";
 }
 
@@ -45,11 +45,11 @@ void check_apart(const fs::path& file, const fs::path& directory, std::span<cons
 // The page and the plots, all or none.
 std::vector<fs::path> write_all(const fs::path& file, const std::string& page, const fs::path& directory,
                                 std::span<const Plot> plots) {
-  const SignalsHeld held;
-  PendingFiles pending_page(directory_of(file));
+  const host::SignalsHeld held;
+  tables::PendingFiles pending_page(tables::directory_of(file));
   pending_page.write(file.filename().string(), page);
   const sim::MadeDirectory made = directory.empty() ? sim::MadeDirectory() : sim::MadeDirectory(directory);
-  PendingFiles pending_plots(directory);
+  tables::PendingFiles pending_plots(directory);
   for (const Plot& plot : plots) {
     pending_plots.write(plot.file, plot.content);
   }
@@ -76,7 +76,7 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   if (!have_vega_scripts()) {
     throw sim::UserError(no_vega_scripts);
   }
-  check_page_target(file);
+  tables::check_page_target(file);
   const std::string page = report_page(report, vega_scripts());
   std::vector<Plot> plots;
   if (!arguments.plots.empty()) {
@@ -93,4 +93,4 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   print(text);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

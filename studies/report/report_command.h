@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct ReportArguments {
   std::string directory;           ///< of a run, a sweep or a study; "DIR:N" for point N of a sweep
@@ -19,4 +19,4 @@ struct ReportArguments {
 /// written; then no file is changed or added. A file that is not an HTML page is not replaced.
 void report_command(const ReportArguments& arguments, void (*print)(const std::string&));
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -7,12 +7,12 @@
 #include "studies/figures/figure_parts.h"
 #include "studies/run/functional_run.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// In order; all are counted.
-[[nodiscard]] std::span<const FigureEntry> frame_figures();
+[[nodiscard]] std::span<const figures::FigureEntry> frame_figures();
 
 /// One value for each of frame_figures(). Throws InternalError when the run has no work log.
-[[nodiscard]] Counts frame_counts(const FunctionalRun& run);
+[[nodiscard]] figures::Counts frame_counts(const FunctionalRun& run);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -6,7 +6,7 @@
 
 #include "studies/run/prepared_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -18,7 +18,7 @@ constexpr std::uint32_t sample_rays = 4;
 }  // namespace
 
 // FNV-1a (Fowler, Noll, Vo) over the bits of all pixels.
-std::uint64_t image_hash(const processors::Image& image) {
+std::uint64_t image_hash(const processors::program::Image& image) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const glm::vec3& pixel : image.pixels) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -30,9 +30,9 @@ std::uint64_t image_hash(const processors::Image& image) {
 
 // Estimates the bytes of log and image from a small rendering of the same view. They are doubled, because a
 // row grows by doubling and the coarse sample may miss what is expensive.
-void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
+void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure) {
-  processors::RenderOptions sample = config.render;
+  processors::program::RenderOptions sample = config.render;
   const std::uint32_t longer = std::max(sample.width, sample.height);
   if (longer <= sample_side && sample.samples <= sample_rays) {
     return;
@@ -44,10 +44,10 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
   sample.samples = std::min(sample.samples, sample_rays);
   sample.record = true;
   sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
-  const processors::Frame frame = processors::render(scene, triangles, structure, sample);
+  const processors::program::Frame frame = processors::program::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;
-  const double bytes = frames * static_cast<double>(processors::totals_of(*frame.log).bytes) /
+  const double bytes = frames * static_cast<double>(processors::program::totals_of(*frame.log).bytes) /
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
                            config.render.samples * 2.0 +
                        frames * pixels * sizeof(glm::vec3);
@@ -56,19 +56,19 @@ void refuse_beyond_memory(const FrameConfig& config, const scenes::Scene& scene,
                         "lower image.width, image.height, image.samples or image.max_depth");
 }
 
-FunctionalRun run_functional(const FrameConfig& config) {
+FunctionalRun run_functional(const keys::FrameConfig& config) {
   const PreparedFrame frame(config);
   return frame.finish(frame.trace());
 }
 
-FunctionalRun run_planned(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file) {
+FunctionalRun run_planned(const keys::FrameConfig& config, scenes::Scene scene, scenes::FileUse file) {
   const PreparedFrame frame(config, std::move(scene), std::move(file));
   return frame.finish(frame.trace());
 }
 
-FunctionalRun run_functional(const FrameConfig& config, const scenes::Scene& scene) {
+FunctionalRun run_functional(const keys::FrameConfig& config, const scenes::Scene& scene) {
   const PreparedFrame frame(config, scene);
   return frame.finish(frame.trace());
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -10,14 +10,14 @@
 
 #include "processors/walk/stripped_log.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// Thread-safe.
 class KeptStrippedLogs {
  public:
   /// That which suits the machine; null if none is kept.
-  [[nodiscard]] std::shared_ptr<const processors::StrippedLog> find(
-      const processors::MachineConfig& machine) {
+  [[nodiscard]] std::shared_ptr<const processors::walk::StrippedLog> find(
+      const processors::machine::MachineConfig& machine) {
     const std::lock_guard lock(mutex_);
     const auto found =
         std::find_if(logs_.begin(), logs_.end(), [&](const auto& log) { return log->suits(machine); });
@@ -28,7 +28,7 @@ class KeptStrippedLogs {
     return logs_.front();
   }
   /// Keeps this one, and of the others those used last.
-  void keep(std::shared_ptr<const processors::StrippedLog> log) {
+  void keep(std::shared_ptr<const processors::walk::StrippedLog> log) {
     const std::lock_guard lock(mutex_);
     logs_.insert(logs_.begin(), std::move(log));
     logs_.resize(std::min(logs_.size(), most_kept));
@@ -38,7 +38,7 @@ class KeptStrippedLogs {
   static constexpr std::size_t most_kept = 2;
 
   std::mutex mutex_;
-  std::vector<std::shared_ptr<const processors::StrippedLog>> logs_;  // those used last are first
+  std::vector<std::shared_ptr<const processors::walk::StrippedLog>> logs_;  // those used last are first
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -2,10 +2,11 @@
 
 #include "studies/host/image_file.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-scenes::Scene open_frame(const FrameConfig& frame, scenes::FileUse* use) {
-  return with_scene_keys([&] { return scenes::open_scene(frame.scene, frame.open, decode_image, use); });
+scenes::Scene open_frame(const keys::FrameConfig& frame, scenes::FileUse* use) {
+  return with_scene_keys(
+      [&] { return scenes::open_scene(frame.scene, frame.open, host::decode_image, use); });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

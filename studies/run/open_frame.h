@@ -6,7 +6,7 @@
 #include "sim/key_error.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// Calls `work`. If a UserError from it names no key, it becomes a sim::KeyError about the key that asks for
 /// the missing part of the scene, or about scene.source.
@@ -22,6 +22,6 @@ decltype(auto) with_scene_keys(const Work& work) {
 }
 
 /// Opens the scene in its first pose. `use` is as in scenes::open_scene.
-[[nodiscard]] scenes::Scene open_frame(const FrameConfig& frame, scenes::FileUse* use = nullptr);
+[[nodiscard]] scenes::Scene open_frame(const keys::FrameConfig& frame, scenes::FileUse* use = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -18,7 +18,7 @@
 #include "studies/host/image_file.h"
 #include "studies/run/open_frame.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -26,7 +26,7 @@ constexpr std::string_view smaller_scene = "take a smaller scene";
 
 // Notes that the tree was cut at its limit, so that it is not the tree that was asked for. Dividing a node
 // never lessens the entries listed, so a limit once met stays met.
-void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
+void note_cut_tree(const keys::FrameConfig& config, const accel::Structure& structure,
                    std::vector<std::string>& notes) {
   const accel::StructureOptions& options = config.structure_options;
   const std::uint64_t limit = structure.kind() == accel::Octree::kind_name ? options.octree.max_entries
@@ -42,7 +42,7 @@ void note_cut_tree(const FrameConfig& config, const accel::Structure& structure,
 
 // Structures that the frame does not use, built only if the user wants plan item `structures` kept.
 std::vector<std::unique_ptr<accel::Structure>> kept_structures(
-    const FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
+    const keys::FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
   std::vector<std::unique_ptr<accel::Structure>> kept;
   for (const std::string_view kind : accel::structure_kinds()) {
     if (config.keep.has(PlanItem::structures) && kind != config.structure) {
@@ -53,7 +53,7 @@ std::vector<std::unique_ptr<accel::Structure>> kept_structures(
 }
 
 // Requires memory for all textures, and for the largest once more, as its decoder returns it.
-void require_textures(const FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
+void require_textures(const keys::FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
   constexpr std::uint64_t bytes_a_texel = 4;
   std::uint64_t largest = 0;
   for (const scenes::Texture& texture : scene.textures) {
@@ -63,10 +63,10 @@ void require_textures(const FrameConfig& config, const scenes::Scene& scene, std
                         config.scene + ": the scene with its textures takes", smaller_scene);
 }
 
-scenes::Scene open_planned(const FrameConfig& config, scenes::FileUse* file) {
-  FrameConfig planned = config;
+scenes::Scene open_planned(const keys::FrameConfig& config, scenes::FileUse* file) {
+  keys::FrameConfig planned = config;
   if (!config.keep.has(PlanItem::textures)) {
-    planned.open.file.size_only = size_of_image;
+    planned.open.file.size_only = host::size_of_image;
   }
   planned.open.file.read_unused = config.keep.has(PlanItem::unreachable);
   return open_frame(planned, file);
@@ -74,14 +74,14 @@ scenes::Scene open_planned(const FrameConfig& config, scenes::FileUse* file) {
 
 }  // namespace
 
-PreparedFrame::PreparedFrame(const FrameConfig& config) : config_(config) {
+PreparedFrame::PreparedFrame(const keys::FrameConfig& config) : config_(config) {
   scenes::FileUse file;
   sim::begin_part(config.meter, "reading the scene");
   scenes::Scene scene = open_planned(config, &file);
   prepare_planned(std::move(scene), std::move(file));
 }
 
-PreparedFrame::PreparedFrame(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file)
+PreparedFrame::PreparedFrame(const keys::FrameConfig& config, scenes::Scene scene, scenes::FileUse file)
     : config_(config) {
   prepare_planned(std::move(scene), std::move(file));
 }
@@ -96,13 +96,13 @@ void PreparedFrame::prepare_planned(scenes::Scene scene, scenes::FileUse file) {
   require_textures(config_, scene,
                    is_left_out(run_.plan, PlanItem::textures) ? facts_->texels_needed : facts_->texels);
   sim::KeyError::reported_under(
-      "scene.source", [&] { drop_parts(run_.plan, facts_->needs, decode_image, scene); },
+      "scene.source", [&] { drop_parts(run_.plan, facts_->needs, host::decode_image, scene); },
       sim::shown(config_.scene) + ": ");
   own_scene_ = std::make_unique<const scenes::Scene>(std::move(scene));
   with_scene_keys([&] { prepare(*own_scene_); });
 }
 
-PreparedFrame::PreparedFrame(const FrameConfig& config, const scenes::Scene& scene) : config_(config) {
+PreparedFrame::PreparedFrame(const keys::FrameConfig& config, const scenes::Scene& scene) : config_(config) {
   with_scene_keys([&] {
     run_.scene = scenes::facts_of(scene);
     prepare(scene);
@@ -113,7 +113,7 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
   scene_ = &scene;
   config_.memory.take(scenes::host_bytes(scene) + accel::TriangleSet::host_bytes(scene), "the scene takes",
                       smaller_scene);
-  give_memory(config_.memory, config_.structure_options);
+  keys::give_memory(config_.memory, config_.structure_options);
   sim::begin_part(config_.meter, "building the " + config_.structure);
   triangles_ = std::make_shared<const accel::TriangleSet>(scene);
   structure_ = accel::make_structure(config_.structure, triangles_, config_.structure_options);
@@ -147,36 +147,38 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
   config_.render.record = true;
 }
 
-processors::Frame PreparedFrame::trace(const processors::PixelSet* only,
-                                       const processors::Frame* before) const {
-  processors::RenderOptions options = config_.render;
+processors::program::Frame PreparedFrame::trace(const processors::program::PixelSet* only,
+                                                const processors::program::Frame* before) const {
+  processors::program::RenderOptions options = config_.render;
   options.only = only;
   options.before = before;
   options.meter = config_.meter;
   sim::begin_part(config_.meter, "tracing", "rows", options.height);
-  return with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+  return with_scene_keys(
+      [&] { return processors::program::render(*scene_, *triangles_, *structure_, options); });
 }
 
-processors::Frame PreparedFrame::trace_small(double side) const {
+processors::program::Frame PreparedFrame::trace_small(double side) const {
   return with_scene_keys([&] {
-    return processors::render(*scene_, *triangles_, *structure_, made_small(config_.render, side));
+    return processors::program::render(*scene_, *triangles_, *structure_,
+                                       keys::made_small(config_.render, side));
   });
 }
 
-FunctionalRun PreparedFrame::part(processors::Frame frame) const {
+FunctionalRun PreparedFrame::part(processors::program::Frame frame) const {
   FunctionalRun run = run_;
   run.frame = std::move(frame);
-  run.totals = processors::totals_of(*run.frame.log);
+  run.totals = processors::program::totals_of(*run.frame.log);
   return run;
 }
 
-FunctionalRun PreparedFrame::finish(processors::Frame frame) const {
+FunctionalRun PreparedFrame::finish(processors::program::Frame frame) const {
   FunctionalRun run = run_;
   run.frame = std::move(frame);
   std::vector<std::uint64_t> shades;
-  run.totals = processors::totals_of(*run.frame.log, &shades);
+  run.totals = processors::program::totals_of(*run.frame.log, &shades);
   run.image_hash = image_hash(run.frame.image);
-  if (std::string note = note_of_infinities(run.frame.image); !note.empty()) {
+  if (std::string note = host::note_of_infinities(run.frame.image); !note.empty()) {
     run.notes.push_back(std::move(note));
   }
   if (facts_) {
@@ -186,18 +188,18 @@ FunctionalRun PreparedFrame::finish(processors::Frame frame) const {
     VoxelReport& report = run.voxel_cut.emplace();
     report.use = database_use(*run.frame.log);
     if (config_.exact_too) {
-      processors::RenderOptions options = config_.render;
+      processors::program::RenderOptions options = config_.render;
       options.voxel_cut = 0.0;
       options.meter = config_.meter;
       sim::begin_part(config_.meter, "tracing without the voxel cut", "rows", options.height);
-      processors::Frame exact =
-          with_scene_keys([&] { return processors::render(*scene_, *triangles_, *structure_, options); });
+      processors::program::Frame exact = with_scene_keys(
+          [&] { return processors::program::render(*scene_, *triangles_, *structure_, options); });
       report.exact = {
-          std::move(exact.image), processors::totals_of(*exact.log), database_use(*exact.log), {}};
+          std::move(exact.image), processors::program::totals_of(*exact.log), database_use(*exact.log), {}};
       report.exact->error = image_error(run.frame.image, report.exact->image);
     }
   }
   return run;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

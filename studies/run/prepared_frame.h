@@ -12,7 +12,7 @@
 #include "studies/run/functional_run.h"
 #include "studies/run/plan/make_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// A frame of which all is ready to be traced: the scene is open, what the frame does not need is left out,
 /// and the structure is built. Parts of it can be traced one after another.
@@ -20,30 +20,30 @@ class PreparedFrame {
  public:
   /// Throws UserError when the scene cannot be used or the frame would take more than the memory limit, which
   /// it estimates from a small rendering.
-  explicit PreparedFrame(const FrameConfig& config);
+  explicit PreparedFrame(const keys::FrameConfig& config);
   /// Like the first, of a scene that is open already, whose textures may still be files.
-  PreparedFrame(const FrameConfig& config, scenes::Scene scene, scenes::FileUse file);
+  PreparedFrame(const keys::FrameConfig& config, scenes::Scene scene, scenes::FileUse file);
   /// Like the first, of the open scene that `config` names. Nothing of it is left out.
-  PreparedFrame(const FrameConfig& config, const scenes::Scene& scene);
+  PreparedFrame(const keys::FrameConfig& config, const scenes::Scene& scene);
 
-  [[nodiscard]] const FrameConfig& config() const { return config_; }
+  [[nodiscard]] const keys::FrameConfig& config() const { return config_; }
   /// Traces and records the pixels of `only`, all if it is null, and adds them to `before`, if that is not
   /// null (processors::RenderOptions).
-  [[nodiscard]] processors::Frame trace(const processors::PixelSet* only = nullptr,
-                                        const processors::Frame* before = nullptr) const;
+  [[nodiscard]] processors::program::Frame trace(const processors::program::PixelSet* only = nullptr,
+                                                 const processors::program::Frame* before = nullptr) const;
   /// Traces and records the frame with its longer side made so many pixels, at most.
-  [[nodiscard]] processors::Frame trace_small(double side) const;
+  [[nodiscard]] processors::program::Frame trace_small(double side) const;
   /// The run of a frame of which only a part is traced: what was not counted of the whole is missing.
-  [[nodiscard]] FunctionalRun part(processors::Frame frame) const;
+  [[nodiscard]] FunctionalRun part(processors::program::Frame frame) const;
   /// The run of the whole frame.
-  [[nodiscard]] FunctionalRun finish(processors::Frame frame) const;
+  [[nodiscard]] FunctionalRun finish(processors::program::Frame frame) const;
 
  private:
   // Leaves out of the scene what the frame does not need, then prepares it.
   void prepare_planned(scenes::Scene scene, scenes::FileUse file);
   void prepare(const scenes::Scene& scene);
 
-  FrameConfig config_;
+  keys::FrameConfig config_;
   std::unique_ptr<const scenes::Scene> own_scene_;  // null if the caller has the scene
   const scenes::Scene* scene_ = nullptr;
   std::optional<PlanFacts> facts_;  // empty: nothing is left out
@@ -53,4 +53,4 @@ class PreparedFrame {
   FunctionalRun run_;                                      // all but the frame
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

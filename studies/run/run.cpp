@@ -18,16 +18,17 @@
 #include "studies/run/record/observers.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
-                          const processors::MachineConfig& machine) {
-  if (const std::string excess = frame.memory.excess(processors::host_bytes(machine)); !excess.empty()) {
+void refuse_beyond_memory(const sim::Config& config, const keys::FrameConfig& frame,
+                          const processors::machine::MachineConfig& machine) {
+  if (const std::string excess = frame.memory.excess(processors::replay::host_bytes(machine));
+      !excess.empty()) {
     config.fail("machine.nodes", "simulating these nodes and their caches takes" + excess);
   }
 }
 
-void refuse_several_frames(const sim::Config& config, const FrameRange& frames) {
+void refuse_several_frames(const sim::Config& config, const keys::FrameRange& frames) {
   if (frames.count > 1) {
     config.fail("frames.count", std::to_string(frames.count) +
                                     " frames are asked for, but `marti run` renders one, that of "
@@ -49,46 +50,49 @@ void declare_sweep_sections(sim::Schema& schema) {
                       "run` says would help");
 }
 
-std::uint64_t map_bytes(const FrameConfig& frame) {
+std::uint64_t map_bytes(const keys::FrameConfig& frame) {
   return HeatMap::host_bytes(std::uint64_t{frame.render.width} * frame.render.height);
 }
 
-void refuse_maps_beyond_memory(const sim::Config& config, const RecordConfig& record,
-                               const FrameConfig& frame) {
+void refuse_maps_beyond_memory(const sim::Config& config, const keys::RecordConfig& record,
+                               const keys::FrameConfig& frame) {
   const std::string excess = frame.memory.excess(map_bytes(frame));
   if (record.heat_maps && !excess.empty()) {
     config.fail("record.heat_maps", "maps of this image take" + excess);
   }
 }
 
-std::uint64_t packets_of(const processors::WorkLog& log, const processors::MachineConfig& machine) {
-  return processors::PacketList(log.width, log.height, machine.packets).size();
+std::uint64_t packets_of(const processors::program::WorkLog& log,
+                         const processors::machine::MachineConfig& machine) {
+  return processors::machine::PacketList(log.width, log.height, machine.packets).size();
 }
 
-std::uint64_t bytes_of(const processors::StrippedLog* stripped) {
+std::uint64_t bytes_of(const processors::walk::StrippedLog* stripped) {
   return stripped == nullptr ? 0 : stripped->bytes_of_words();
 }
 
 // The memory that is left beside the work logs, the machine and heat maps.
-sim::MemoryBudget memory_beside(const RunResult& result, const RecordConfig& record,
-                                const processors::StrippedLog* stripped) {
+sim::MemoryBudget memory_beside(const RunResult& result, const keys::RecordConfig& record,
+                                const processors::walk::StrippedLog* stripped) {
   sim::MemoryBudget budget = result.frame_config.memory;
-  budget.take(result.functional.totals.bytes + bytes_of(stripped) + processors::host_bytes(result.machine) +
+  budget.take(result.functional.totals.bytes + bytes_of(stripped) +
+                  processors::replay::host_bytes(result.machine) +
                   (record.heat_maps ? map_bytes(result.frame_config) : 0),
               "the work log and the machine take", "make the image smaller");
   return budget;
 }
 
 // Times the machine with the observers that are asked for, then evaluates what they have seen.
-processors::MachineResult watched_replay(const RecordConfig& record, const RunOptions& run,
-                                         const processors::StrippedLog* stripped, RunResult& result) {
+processors::replay::MachineResult watched_replay(const keys::RecordConfig& record, const RunOptions& run,
+                                                 const processors::walk::StrippedLog* stripped,
+                                                 RunResult& result) {
   Observers observers;
-  std::optional<processors::PathRecorder> path;
+  std::optional<processors::path::PathRecorder> path;
   if (record.critical_path) {
     // A timeline shows the pieces of the path; else only their sums are wanted.
-    observers.add(
-        path.emplace(memory_beside(result, record, stripped),
-                     record.timeline ? processors::PathPieces::no_fold : processors::PathPieces::usual_fold));
+    observers.add(path.emplace(
+        memory_beside(result, record, stripped),
+        record.timeline ? processors::path::PathPieces::no_fold : processors::path::PathPieces::usual_fold));
   }
   if (record.timeline) {
     result.timeline = std::make_unique<Timeline>(run.directory / "timeline.json", record.timeline_options);
@@ -99,46 +103,44 @@ processors::MachineResult watched_replay(const RecordConfig& record, const RunOp
     result.heat_map = std::make_unique<HeatMap>();
     observers.add(*result.heat_map);
   }
-  processors::PacketsOfNodes packets_of_nodes;
+  processors::walk::PacketsOfNodes packets_of_nodes;
   if (result.machine.count.working_set) {
     observers.add(packets_of_nodes);
   }
-  processors::ReplayOptions options;
+  processors::replay::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
   options.stripped = path ? nullptr : stripped;  // a critical path needs every step
   options.path = path ? &*path : nullptr;
   options.meter = run.meter;
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
-  const processors::WorkLog& log = *result.functional.frame.log;
+  const processors::program::WorkLog& log = *result.functional.frame.log;
   std::vector<PlanEntry> entries = machine_plan(kept, result.machine, log, options.observer != nullptr);
-  processors::MachineResult timed = processors::replay(log, result.machine, options);
+  processors::replay::MachineResult timed = processors::replay::replay(log, result.machine, options);
   count_machine_plan(timed, entries);
   add_entries(result.plan, std::move(entries));
   if (path) {
     result.critical_path = path->path();
   }
   if (result.machine.count.working_set) {
-    result.working_set = processors::working_set(packets_of_nodes);
-    processors::check_working_set(*result.working_set, result.machine, timed);
+    result.working_set = processors::passes::working_set(packets_of_nodes);
+    processors::passes::check_working_set(*result.working_set, result.machine, timed);
   }
   return timed;
 }
 
 // The log stripped for `machine` and `other`, which both walk it; null where that would not be faster or
 // would take more than half of the memory that the work log, the machine and heat maps leave.
-std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig& frame,
-                                                              const processors::WorkLog& log,
-                                                              std::uint64_t log_bytes,
-                                                              const processors::MachineConfig& machine,
-                                                              const processors::MachineConfig& other,
-                                                              const RunOptions& options) {
-  using processors::StrippedLog;
+std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
+    const keys::FrameConfig& frame, const processors::program::WorkLog& log, std::uint64_t log_bytes,
+    const processors::machine::MachineConfig& machine, const processors::machine::MachineConfig& other,
+    const RunOptions& options) {
+  using processors::walk::StrippedLog;
   // Stripping takes less time than the two save, but not where little is taken out.
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
                     StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
-  const std::uint64_t taken = log_bytes + processors::host_bytes(machine) + map_bytes(frame);
+  const std::uint64_t taken = log_bytes + processors::replay::host_bytes(machine) + map_bytes(frame);
   const std::uint64_t left = frame.memory.left();
   if (!pays || taken >= left) {
     return nullptr;
@@ -157,22 +159,23 @@ std::shared_ptr<const processors::StrippedLog> strip_for_both(const FrameConfig&
 
 // Times the frame on the machine and on one node, at the same time, and derives all other figures. Returns
 // the stripped log of both machines, if they had one.
-std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& record,
-                                                          const RunOptions& options, RunResult& result) {
-  std::shared_ptr<const processors::StrippedLog> stripped;
+std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::RecordConfig& record,
+                                                                const RunOptions& options,
+                                                                RunResult& result) {
+  std::shared_ptr<const processors::walk::StrippedLog> stripped;
   result.plan = result.functional.plan;
-  const processors::WorkLog& log = *result.functional.frame.log;
-  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::Scheme::image) {
+  const processors::program::WorkLog& log = *result.functional.frame.log;
+  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::machine::Scheme::image) {
     sim::begin_part(options.meter, "timing the machine", "packets", packets_of(log, result.machine));
     result.timed = watched_replay(record, options, nullptr, result);
     result.one_node = result.timed;
   } else {
-    const processors::MachineConfig one_node = processors::one_node_of(result.machine);
+    const processors::machine::MachineConfig one_node = processors::machine::one_node_of(result.machine);
     stripped = strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine,
                               one_node, options);
     sim::begin_part(options.meter, "timing the machine and one node", "packets",
                     packets_of(log, result.machine) + packets_of(log, one_node));
-    processors::ReplayOptions of_one;
+    processors::replay::ReplayOptions of_one;
     of_one.meter = options.meter;
     keep(result.frame_config.keep, of_one);
     of_one.stripped = stripped.get();
@@ -181,7 +184,7 @@ std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& re
     tbb::parallel_invoke([&] { result.timed = watched_replay(record, options, stripped.get(), result); },
                          [&] {
                            try {
-                             result.one_node = processors::replay(log, one_node, of_one);
+                             result.one_node = processors::replay::replay(log, one_node, of_one);
                            } catch (...) {
                              fault = std::current_exception();
                            }
@@ -190,26 +193,31 @@ std::shared_ptr<const processors::StrippedLog> time_frame(const RecordConfig& re
       std::rethrow_exception(fault);
     }
   }
-  result.totals = totals_of(result.timed);
-  result.counts = counts_of(result.machine, result.timed, result.totals);
-  result.one_node_counts = counts_of(processors::one_node_of(result.machine), result.one_node);
-  result.bounds = processors::frame_bounds(result.machine, result.timed);
-  result.prediction = processors::predict(result.machine, result.timed);
+  result.totals = figures::totals_of(result.timed);
+  result.counts = figures::counts_of(result.machine, result.timed, result.totals);
+  result.one_node_counts =
+      figures::counts_of(processors::machine::one_node_of(result.machine), result.one_node);
+  result.bounds = processors::replay::frame_bounds(result.machine, result.timed);
+  result.prediction = processors::replay::predict(result.machine, result.timed);
   return stripped;
 }
 
 // The work log is in memory already, the stripped one too.
-WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
-                       std::shared_ptr<const processors::StrippedLog> stripped, const RunResult& result) {
-  constexpr Work of_the_scene = 100'000'000;  // to read it and build its tree; enough for a small frame
-  const Work of_the_run = run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
-  const Work budget = run.what_helps == Measuring::all ? unlimited_work : of_the_scene + of_the_run;
-  SharedLog shared{
+helps::WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
+                              std::shared_ptr<const processors::walk::StrippedLog> stripped,
+                              const RunResult& result) {
+  constexpr helps::Work of_the_scene =
+      100'000'000;  // to read it and build its tree; enough for a small frame
+  const helps::Work of_the_run =
+      helps::run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
+  const helps::Work budget =
+      run.what_helps == helps::Measuring::all ? helps::unlimited_work : of_the_scene + of_the_run;
+  helps::SharedLog shared{
       *result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory, run.meter};
   keep(result.frame_config.keep, shared.options);
   const std::uint64_t taken = result.functional.totals.bytes + bytes_of(shared.stripped.get());
   shared.memory = sim::MemoryBudget(shared.memory.left() - std::min(taken, shared.memory.left()));
-  return what_helps(config, run.prices, result.machine, result.timed, shared, budget);
+  return helps::what_helps(config, run.prices, result.machine, result.timed, shared, budget);
 }
 
 // The options of another run of `first`.
@@ -234,35 +242,35 @@ RunResult described_by(const RunResult& first, const KeptItems& keep) {
 
 sim::Schema run_schema() {
   sim::Schema schema;
-  declare_frame_keys(schema);
-  declare_machine_keys(schema);
-  declare_record_keys(schema);
+  keys::declare_frame_keys(schema);
+  keys::declare_machine_keys(schema);
+  keys::declare_record_keys(schema);
   declare_sweep_sections(schema);
-  declare_sections_of_other_commands(schema);
+  keys::declare_sections_of_other_commands(schema);
   return schema;
 }
 
 RunResult run(sim::Config& config, RunOptions options) {
   RunResult result;
   result.config_name = config.name();
-  result.frame_config = read_frame(config);
+  result.frame_config = keys::read_frame(config);
   result.frame_config.keep = options.keep;
   result.frame_config.meter = options.meter;
   refuse_several_frames(config, result.frame_config.frames);
-  result.machine = read_machine(config);
-  const RecordConfig record = read_record(config, !options.directory.empty());
+  result.machine = keys::read_machine(config);
+  const keys::RecordConfig record = keys::read_record(config, !options.directory.empty());
   config.refuse_unused();
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
   if (record.critical_path) {
-    sim::with_places(config, [&] { processors::check_critical_path(result.machine); });
+    sim::with_places(config, [&] { processors::path::check_critical_path(result.machine); });
   }
   result.values = config.effective_values();
   sim::with_places(config, [&] {
     result.functional =
         options.functional ? std::move(*options.functional) : run_functional(result.frame_config);
-    std::shared_ptr<const processors::StrippedLog> stripped = time_frame(record, options, result);
-    if (options.what_helps != Measuring::none) {
+    std::shared_ptr<const processors::walk::StrippedLog> stripped = time_frame(record, options, result);
+    if (options.what_helps != helps::Measuring::none) {
       result.helps = measure_help(config, options, std::move(stripped), result);
     }
   });
@@ -283,4 +291,4 @@ RunResult time_again(const RunResult& first, const KeptItems& keep) {
   return result;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -22,34 +22,37 @@
 #include "studies/run/record/heat_map.h"
 #include "studies/run/record/timeline.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 struct RunResult {
   std::string config_name;
   std::vector<sim::EffectiveValue> values;
-  FrameConfig frame_config;
+  keys::FrameConfig frame_config;
   Plan plan;  ///< what was left out of the frame and of the machine
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   FunctionalRun functional;
-  processors::MachineResult timed;
-  processors::MachineResult one_node;  ///< the same machine with one cluster of one node
-  MachineTotals totals;                ///< of the timed machine
-  Counts counts;                       ///< of the timed machine
-  Counts one_node_counts;
-  std::optional<WhatHelps> helps;  ///< empty: not asked for
-  processors::FrameBounds bounds;
-  std::optional<processors::Prediction> prediction;
-  std::optional<processors::WorkingSet> working_set;      ///< of the timed machine; empty: not asked for
-  std::optional<processors::CriticalPath> critical_path;  ///< of the timed machine; empty: not asked for
+  processors::replay::MachineResult timed;
+  processors::replay::MachineResult one_node;  ///< the same machine with one cluster of one node
+  figures::MachineTotals totals;               ///< of the timed machine
+  figures::Counts counts;                      ///< of the timed machine
+  figures::Counts one_node_counts;
+  std::optional<helps::WhatHelps> helps;  ///< empty: not asked for
+  processors::replay::FrameBounds bounds;
+  std::optional<processors::replay::Prediction> prediction;
+  std::optional<processors::passes::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
+  std::optional<processors::path::CriticalPath>
+      critical_path;                   ///< of the timed machine; empty: not asked for
   std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
   std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
 
   /// A figure of the timed machine (studies/figures/derived_figures.h), measured against one node.
   [[nodiscard]] std::optional<double> figure(std::string_view name) const {
-    return figure_of({&counts, &one_node_counts}, name);
+    return figures::figure_of({&counts, &one_node_counts}, name);
   }
   /// A counted figure of the timed machine; 0 where the machine has no such part.
-  [[nodiscard]] std::int64_t count(std::string_view name) const { return count_of(counts, name).value_or(0); }
+  [[nodiscard]] std::int64_t count(std::string_view name) const {
+    return figures::count_of(counts, name).value_or(0);
+  }
   /// The counted figures that a component's counters are merged into: those whose names begin with `prefix`.
   template <sim::HasCounters S>
   [[nodiscard]] S counters(const std::string& prefix) const {
@@ -67,8 +70,8 @@ struct RunOptions {
   KeptItems keep{};
   /// The functional run of the frame that the configuration describes; empty: it is to be made.
   std::optional<FunctionalRun> functional{};
-  Measuring what_helps = Measuring::none;  ///< of what would make the frame shorter
-  std::optional<Prices> prices{};          ///< by which that is chosen
+  helps::Measuring what_helps = helps::Measuring::none;  ///< of what would make the frame shorter
+  std::optional<keys::Prices> prices{};                  ///< by which that is chosen
   /// Stripped logs of that functional run, taken from here and kept here; null: none.
   KeptStrippedLogs* stripped_logs = nullptr;
   /// Is told how far the run is; after its stop() the run soon throws sim::Stopped. Null: nobody waits.
@@ -85,10 +88,10 @@ struct RunOptions {
 [[nodiscard]] RunResult time_again(const RunResult& first, const KeptItems& keep);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
-void refuse_beyond_memory(const sim::Config& config, const FrameConfig& frame,
-                          const processors::MachineConfig& machine);
+void refuse_beyond_memory(const sim::Config& config, const keys::FrameConfig& frame,
+                          const processors::machine::MachineConfig& machine);
 /// Throws UserError when more than one frame is asked for.
-void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
+void refuse_several_frames(const sim::Config& config, const keys::FrameRange& frames);
 
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();
@@ -104,4 +107,4 @@ void refuse_several_frames(const sim::Config& config, const FrameRange& frames);
 [[nodiscard]] std::string json_of(const RunResult& result,
                                   const std::map<std::string, std::string>& files = {});
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

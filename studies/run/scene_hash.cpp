@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::uint64_t scene_hash(const scenes::Scene& scene) {
   return hash.value();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

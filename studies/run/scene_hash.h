@@ -5,10 +5,10 @@
 
 #include "scenes/scene.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// FNV-1a (Fowler, Noll, Vo) over the bits of what a frame depends on: vertices, triangles, quadrics,
 /// materials, textures, lights, camera, background. Equal scenes have equal hashes, whatever their names.
 [[nodiscard]] std::uint64_t scene_hash(const scenes::Scene& scene);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

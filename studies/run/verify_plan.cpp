@@ -13,35 +13,36 @@
 #include "studies/host/image_file.h"
 #include "studies/run/plan/make_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
 // One row without the shadow rays and lights at points of these materials, and where each pixel begins in it.
-processors::LogRow strip_row(const std::vector<bool>& materials, const processors::LogRow& row) {
-  using processors::Step;
+processors::program::LogRow strip_row(const std::vector<bool>& materials,
+                                      const processors::program::LogRow& row) {
+  using processors::program::Step;
   std::vector<std::uint32_t> words;
   std::vector<std::uint32_t> begin;
   bool unlit = false;    // the current point has one of these materials
   bool leaving = false;  // inside a ray that is left out
   std::size_t pixel = 0;
   std::size_t at = 0;
-  for (; at < row.words.size(); at += processors::step_words(&row.words[at])) {
+  for (; at < row.words.size(); at += processors::program::step_words(&row.words[at])) {
     for (; row.begin[pixel] <= at && pixel + 1 < row.begin.size(); ++pixel) {
       begin.push_back(static_cast<std::uint32_t>(words.size()));
     }
-    const Step step = processors::step_of(row.words[at]);
-    const std::uint32_t operand = processors::operand_of(row.words[at]);
+    const Step step = processors::program::step_of(row.words[at]);
+    const std::uint32_t operand = processors::program::operand_of(row.words[at]);
     if (step == Step::shade) {
       unlit = operand < materials.size() && materials[operand];
     } else if (step == Step::ray) {
-      leaving = unlit && processors::ray_kind_of(operand) == processors::RayKind::shadow;
+      leaving = unlit && processors::program::ray_kind_of(operand) == processors::program::RayKind::shadow;
     }
-    const bool visit = processors::visits_node(step) || step == Step::pass || step == Step::ray;
+    const bool visit = processors::program::visits_node(step) || step == Step::pass || step == Step::ray;
     if ((leaving && visit) || (unlit && step == Step::light)) {
       continue;
     }
-    for (std::size_t word = 0; word < processors::step_words(&row.words[at]); ++word) {
+    for (std::size_t word = 0; word < processors::program::step_words(&row.words[at]); ++word) {
       words.push_back(row.words[at + word]);
     }
   }
@@ -49,7 +50,7 @@ processors::LogRow strip_row(const std::vector<bool>& materials, const processor
   return {{words.begin(), words.end()}, {begin.begin(), begin.end()}};
 }
 
-std::string difference_of_images(const processors::Image& a, const processors::Image& b) {
+std::string difference_of_images(const processors::program::Image& a, const processors::program::Image& b) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -88,10 +89,10 @@ std::string machine_of(const RunResult& result) {
 class Verifier {
  public:
   explicit Verifier(const RunResult& result) : result_(result) {
-    const FrameConfig& frame = result.frame_config;
+    const keys::FrameConfig& frame = result.frame_config;
     scenes::OpenOptions open = frame.open;
-    open.file.size_only = size_of_image;
-    unlit_ = unlit_materials(scenes::open_scene(frame.scene, open, decode_image));
+    open.file.size_only = host::size_of_image;
+    unlit_ = unlit_materials(scenes::open_scene(frame.scene, open, host::decode_image));
   }
 
   PlanVerdict verdict() {
@@ -126,7 +127,7 @@ class Verifier {
   }
 
   void check(PlanItem item) {
-    FrameConfig config = result_.frame_config;
+    keys::FrameConfig config = result_.frame_config;
     config.keep.keep(item);
     const FunctionalRun kept = run_functional(config);
     const bool shadows = item == PlanItem::shadow_rays;
@@ -176,9 +177,10 @@ class Verifier {
 
 }  // namespace
 
-processors::WorkLog without_shadows_at(const std::vector<bool>& materials, const processors::WorkLog& log) {
-  processors::WorkLog kept = log;
-  for (processors::LogRow& row : kept.rows) {
+processors::program::WorkLog without_shadows_at(const std::vector<bool>& materials,
+                                                const processors::program::WorkLog& log) {
+  processors::program::WorkLog kept = log;
+  for (processors::program::LogRow& row : kept.rows) {
     row = strip_row(materials, row);
   }
   return kept;
@@ -187,12 +189,13 @@ processors::WorkLog without_shadows_at(const std::vector<bool>& materials, const
 std::vector<bool> unlit_materials(const scenes::Scene& scene) {
   std::vector<bool> unlit;
   for (const scenes::Material& material : scene.materials) {
-    unlit.push_back(processors::asks_lights(material) && !processors::shows_light(material));
+    unlit.push_back(processors::program::asks_lights(material) &&
+                    !processors::program::shows_light(material));
   }
   return unlit;
 }
 
-std::string difference_of(const processors::WorkLog& a, const processors::WorkLog& b) {
+std::string difference_of(const processors::program::WorkLog& a, const processors::program::WorkLog& b) {
   if (a.traversal != b.traversal || a.integrator != b.integrator || a.mailboxes != b.mailboxes ||
       a.width != b.width || a.height != b.height || a.samples != b.samples || a.primitives != b.primitives ||
       a.quadrics != b.quadrics || a.materials != b.materials || a.voxels != b.voxels ||
@@ -212,4 +215,4 @@ std::string difference_of(const processors::WorkLog& a, const processors::WorkLo
 
 PlanVerdict verify_plan(const RunResult& result) { return Verifier(result).verdict(); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -8,7 +8,7 @@
 #include "processors/program/work_log.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 struct PlanVerdict {
   bool holds = true;
@@ -24,13 +24,14 @@ struct PlanVerdict {
 
 /// The log without the shadow rays and the lights at points of these materials (by index; averaged materials
 /// have no entry).
-[[nodiscard]] processors::WorkLog without_shadows_at(const std::vector<bool>& materials,
-                                                     const processors::WorkLog& log);
+[[nodiscard]] processors::program::WorkLog without_shadows_at(const std::vector<bool>& materials,
+                                                              const processors::program::WorkLog& log);
 
 /// For each material of a scene: whether it asks for lights although none adds anything.
 [[nodiscard]] std::vector<bool> unlit_materials(const scenes::Scene& scene);
 
 /// What differs between two logs, or an empty text.
-[[nodiscard]] std::string difference_of(const processors::WorkLog& a, const processors::WorkLog& b);
+[[nodiscard]] std::string difference_of(const processors::program::WorkLog& a,
+                                        const processors::program::WorkLog& b);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -5,20 +5,21 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-DatabaseUse database_use(const processors::WorkLog& log) {
-  using processors::Step;
+DatabaseUse database_use(const processors::program::WorkLog& log) {
+  using processors::program::Step;
   const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
   std::vector<bool> read(nodes.size());
   std::vector<bool> tested(log.primitives);
   std::vector<bool> voxel_read(log.voxels);
   std::vector<bool> listed(nodes.size());
   const std::uint32_t first_voxel = log.materials - log.voxels;
-  for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(row.words.data() + at)) {
-      const Step step = processors::step_of(row.words[at]);
-      const std::uint32_t operand = processors::operand_of(row.words[at]);
+  for (const processors::program::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size();
+         at += processors::program::step_words(row.words.data() + at)) {
+      const Step step = processors::program::step_of(row.words[at]);
+      const std::uint32_t operand = processors::program::operand_of(row.words[at]);
       switch (step) {
         case Step::branch:
         case Step::cut:
@@ -66,7 +67,7 @@ DatabaseUse database_use(const processors::WorkLog& log) {
   return use;
 }
 
-ImageError image_error(const processors::Image& image, const processors::Image& exact) {
+ImageError image_error(const processors::program::Image& image, const processors::program::Image& exact) {
   sim::ensure(image.width == exact.width && image.height == exact.height,
               "image error: images of different sizes");
   ImageError error;
@@ -88,4 +89,4 @@ ImageError image_error(const processors::Image& image, const processors::Image& 
   return error;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

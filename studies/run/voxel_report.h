@@ -9,7 +9,7 @@
 #include "processors/program/render.h"
 #include "processors/program/work_log.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// The part of the database that the rays of a log needed. Each record counts once.
 struct DatabaseUse {
@@ -21,7 +21,7 @@ struct DatabaseUse {
       level_nodes;  ///< `nodes` by level, the root's first; as long as the tree is deep
 };
 
-[[nodiscard]] DatabaseUse database_use(const processors::WorkLog& log);
+[[nodiscard]] DatabaseUse database_use(const processors::program::WorkLog& log);
 
 /// Differences of linear RGB values.
 struct ImageError {
@@ -32,12 +32,13 @@ struct ImageError {
 };
 
 /// The images must be of one size.
-[[nodiscard]] ImageError image_error(const processors::Image& image, const processors::Image& exact);
+[[nodiscard]] ImageError image_error(const processors::program::Image& image,
+                                     const processors::program::Image& exact);
 
 /// The exact frame beside a cut one.
 struct ExactFrame {
-  processors::Image image;
-  processors::LogTotals totals;
+  processors::program::Image image;
+  processors::program::LogTotals totals;
   DatabaseUse use;
   ImageError error;  ///< of the cut image
 };
@@ -47,4 +48,4 @@ struct VoxelReport {
   std::optional<ExactFrame> exact;  ///< with image.voxel_cut_reference
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

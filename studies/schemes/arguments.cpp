@@ -7,11 +7,11 @@
 #include <numeric>
 #include <optional>
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 namespace {
 
-using processors::Scheme;
+using processors::machine::Scheme;
 
 // A machine must be timed with at least so many numbers of nodes to say anything about growth.
 constexpr std::size_t fewest_points = 3;
@@ -43,9 +43,9 @@ std::vector<ScalingPoint> find(Kind kind, std::span<const ScalingPoint> points) 
 double efficiency(const ScalingPoint& point) { return point.efficiency.value_or(0.0); }
 double speed_up(const ScalingPoint& point) { return point.speed_up.value_or(0.0); }
 
-Claim naive(std::span<const ScalingPoint> points) {
-  Claim claim{"naive pixel parallelism", "one shared memory saturates with few processors", "", {}};
-  claim.verdict = Verdict::not_measured;
+tables::Claim naive(std::span<const ScalingPoint> points) {
+  tables::Claim claim{"naive pixel parallelism", "one shared memory saturates with few processors", "", {}};
+  claim.verdict = tables::Verdict::not_measured;
   if (const std::vector<ScalingPoint> machine = find(Kind::naive, points); !machine.empty()) {
     const auto best = std::max_element(machine.begin(), machine.end(), [](const auto& a, const auto& b) {
       return speed_up(a) < speed_up(b);
@@ -54,15 +54,15 @@ Claim naive(std::span<const ScalingPoint> points) {
     claim.here = fmt::format(
         "at most {:.1f} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
         speed_up(*best), last.nodes, 100.0 * last.interconnect.value_or(0.0));
-    claim.verdict = verdict_of(last.interconnect.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
+    claim.verdict = tables::verdict_of(last.interconnect.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
   }
   return claim;
 }
 
-Claim cached(std::span<const ScalingPoint> points) {
-  Claim claim{
+tables::Claim cached(std::span<const ScalingPoint> points) {
+  tables::Claim claim{
       "packets with private caches", "a much larger number of processors can share the memory", "", {}};
-  claim.verdict = Verdict::not_measured;
+  claim.verdict = tables::Verdict::not_measured;
   const std::vector<ScalingPoint> without = find(Kind::naive, points);
   const std::vector<ScalingPoint> with = find(Kind::cached, points);
   if (!without.empty() && !with.empty()) {
@@ -70,14 +70,14 @@ Claim cached(std::span<const ScalingPoint> points) {
     const double many = half_efficiency_nodes(with);
     claim.here =
         fmt::format("half the efficiency is left at {:.0f} nodes, without caches at {:.1f}", many, few);
-    claim.verdict = verdict_of(many >= 4.0 * few);
+    claim.verdict = tables::verdict_of(many >= 4.0 * few);
   }
   return claim;
 }
 
-Claim space(std::span<const ScalingPoint> points) {
-  Claim claim{"space parallelism", "efficiency falls beyond ten or twenty processors", "", {}};
-  claim.verdict = Verdict::not_measured;
+tables::Claim space(std::span<const ScalingPoint> points) {
+  tables::Claim claim{"space parallelism", "efficiency falls beyond ten or twenty processors", "", {}};
+  claim.verdict = tables::Verdict::not_measured;
   if (const std::vector<ScalingPoint> machine = find(Kind::space, points); !machine.empty()) {
     std::string figures;
     for (const ScalingPoint& point : machine) {
@@ -87,13 +87,14 @@ Claim space(std::span<const ScalingPoint> points) {
     const double half = half_efficiency_nodes(machine);
     claim.here = fmt::format("efficiency {} nodes; half of it is left at {:.0f}", figures, half);
     claim.verdict =
-        verdict_of(half <= 40.0 && efficiency(machine.back()) < 0.5 * efficiency(machine.front()));
+        tables::verdict_of(half <= 40.0 && efficiency(machine.back()) < 0.5 * efficiency(machine.front()));
   }
   return claim;
 }
 
-Claim pipeline(std::span<const StagePoint> stages) {
-  Claim claim{"pipelining", "the slowest stage limits the machine", "", Verdict::not_measured};
+tables::Claim pipeline(std::span<const StagePoint> stages) {
+  tables::Claim claim{"pipelining", "the slowest stage limits the machine", "",
+                      tables::Verdict::not_measured};
   if (stages.size() > 1) {
     const StagePoint& first = stages.front();
     const auto best = std::min_element(stages.begin(), stages.end(),
@@ -105,14 +106,14 @@ Claim pipeline(std::span<const StagePoint> stages) {
     claim.here = fmt::format("{}; {}, {:.2f} times as fast", describe(first), describe(*best),
                              static_cast<double>(first.end) / static_cast<double>(best->end));
     // Nodes taken from the least busy stage and given to the busiest must help.
-    claim.verdict = verdict_of(first.busy[first.slowest()] > 0.8 && best->end < first.end);
+    claim.verdict = tables::verdict_of(first.busy[first.slowest()] > 0.8 && best->end < first.end);
   }
   return claim;
 }
 
-Claim cells(std::span<const CellPoint> points) {
-  Claim claim{"size of the cells", "too small and too large cells both hurt the cache", "",
-              Verdict::not_measured};
+tables::Claim cells(std::span<const CellPoint> points) {
+  tables::Claim claim{"size of the cells", "too small and too large cells both hurt the cache", "",
+                      tables::Verdict::not_measured};
   if (points.size() >= fewest_points) {
     const auto fewest = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) {
       return a.tree.references.all_misses() < b.tree.references.all_misses();
@@ -124,7 +125,7 @@ Claim cells(std::span<const CellPoint> points) {
     claim.here = fmt::format("fewest misses with level {}; {:.1f} times as many with {}, {:.2f} with {}",
                              fewest->level, times(points.front()), points.front().level, times(points.back()),
                              points.back().level);
-    claim.verdict = verdict_of(times(points.front()) > 1.05 && times(points.back()) > 1.05);
+    claim.verdict = tables::verdict_of(times(points.front()) > 1.05 && times(points.back()) > 1.05);
   }
   return claim;
 }
@@ -145,10 +146,10 @@ double half_efficiency_nodes(std::span<const ScalingPoint> machine) {
   return machine.back().nodes;
 }
 
-std::vector<Claim> check_arguments(std::span<const ScalingPoint> points,
-                                   std::span<const CellPoint> cell_points,
-                                   std::span<const StagePoint> stages) {
+std::vector<tables::Claim> check_arguments(std::span<const ScalingPoint> points,
+                                           std::span<const CellPoint> cell_points,
+                                           std::span<const StagePoint> stages) {
   return {naive(points), cached(points), space(points), pipeline(stages), cells(cell_points)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

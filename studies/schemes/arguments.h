@@ -10,15 +10,15 @@
 #include "studies/schemes/scaling_table.h"
 #include "studies/schemes/stage_table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 /// The largest number of nodes with at least half the efficiency that the machine has with its fewest nodes,
 /// between the measured ones by a straight line in log(nodes); the last one when it never falls so far.
 [[nodiscard]] double half_efficiency_nodes(std::span<const ScalingPoint> machine);
 
 /// Statements whose machines were not timed have the verdict not_measured.
-[[nodiscard]] std::vector<Claim> check_arguments(std::span<const ScalingPoint> points,
-                                                 std::span<const CellPoint> cells,
-                                                 std::span<const StagePoint> stages);
+[[nodiscard]] std::vector<tables::Claim> check_arguments(std::span<const ScalingPoint> points,
+                                                         std::span<const CellPoint> cells,
+                                                         std::span<const StagePoint> stages);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

@@ -10,7 +10,7 @@
 #include "studies/schemes/tree_point.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 struct CellPoint {
   std::uint32_t level = 0;  ///< structure.max_level
@@ -20,6 +20,6 @@ struct CellPoint {
 [[nodiscard]] std::vector<CellPoint> time_cells(const SchemesConfig& config);
 
 /// "cells": a row for each level.
-[[nodiscard]] Table cell_table(std::span<const CellPoint> points);
+[[nodiscard]] tables::Table cell_table(std::span<const CellPoint> points);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

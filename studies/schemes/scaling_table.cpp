@@ -7,21 +7,21 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/schemes/tree_point.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 namespace {
 
-ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResult& result,
-                      const Counts& one_node) {
+ScalingPoint point_of(const NamedMachine& machine, const processors::replay::MachineResult& result,
+                      const figures::Counts& one_node) {
   ScalingPoint point;
   point.machine = machine.name;
   point.scheme = machine.config.scheme;
   point.nodes = machine.config.all_nodes();
   point.end = result.end;
-  point.one_node_end = *count_of(one_node, "end");
-  point.limit = find_limit(machine.config, result);
-  const Counts counts = counts_of(machine.config, result);
-  const auto figure = [&](std::string_view name) { return figure_of({&counts, &one_node}, name); };
+  point.one_node_end = *figures::count_of(one_node, "end");
+  point.limit = figures::find_limit(machine.config, result);
+  const figures::Counts counts = figures::counts_of(machine.config, result);
+  const auto figure = [&](std::string_view name) { return figures::figure_of({&counts, &one_node}, name); };
   point.speed_up = figure("speed_up");
   point.efficiency = figure("efficiency");
   point.interconnect = figure("interconnect_utilisation");
@@ -31,14 +31,14 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::MachineResu
        {"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait", "dispatch_wait"}) {
     point.waiting += figure("share_" + std::string(what)).value_or(0.0);
   }
-  point.messages = count_of(counts, "network_messages");
-  point.message_bytes = count_of(counts, "network_bytes");
+  point.messages = figures::count_of(counts, "network_messages");
+  point.message_bytes = figures::count_of(counts, "network_bytes");
   return point;
 }
 
 }  // namespace
 
-std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const processors::WorkLog& log,
+std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const processors::program::WorkLog& log,
                                         std::span<const StagePoint> stages) {
   const auto quickest = std::min_element(stages.begin(), stages.end(),
                                          [](const auto& a, const auto& b) { return a.end < b.end; });
@@ -47,19 +47,19 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
                   config.machines.size() * (1 + config.nodes.size()));
   for (const std::filesystem::path& file : config.machines) {
     const NamedMachine own = read_machine_file(file, config.frame);
-    processors::PipelineConfig shares = own.config.pipeline;
+    processors::machine::PipelineConfig shares = own.config.pipeline;
     if (quickest != stages.end()) {
       shares.search = quickest->nodes[0];
       shares.nearest = quickest->nodes[1];
       shares.shade = quickest->nodes[2];
     }
-    const processors::MachineConfig alone = one_node_of(own.config);
-    const Counts one_node = counts_of(alone, processors::replay(log, alone));
+    const processors::machine::MachineConfig alone = processors::machine::one_node_of(own.config);
+    const figures::Counts one_node = figures::counts_of(alone, processors::replay::replay(log, alone));
     sim::count_step(config.frame.meter);
     for (const std::uint32_t nodes : config.nodes) {
       if (nodes >= fewest_nodes(own.config)) {
         const NamedMachine machine = read_machine_file(file, config.frame, nodes, shares);
-        points.push_back(point_of(machine, processors::replay(log, machine.config), one_node));
+        points.push_back(point_of(machine, processors::replay::replay(log, machine.config), one_node));
       }
       sim::count_step(config.frame.meter);
     }
@@ -67,29 +67,31 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
   return points;
 }
 
-Table scaling_table(std::span<const ScalingPoint> points) {
-  Table table("schemes", "Schemes: how machines grow with their nodes",
-              {{"machine", ColumnType::text, "", "file of the machine"},
-               {"scheme", ColumnType::text, "", "its parallel scheme"},
-               {"nodes", ColumnType::integer, "1", "processor nodes of all clusters"},
-               figure_column("end"),
-               {"one_node", ColumnType::integer, "ps", "time of the frame with one node"},
-               figure_column("speed_up"),
-               figure_column("efficiency"),
-               {"limit", ColumnType::text, "", "the largest part of the nodes' time"},
-               figure_column("interconnect_utilisation"),
-               figure_column("hit_ratio"),
-               {"waiting", ColumnType::real, "fraction", "share of the nodes' time spent in queues"},
-               figure_column("share_idle"),
-               figure_column("network_messages"),
-               figure_column("network_bytes")});
-  const auto cell = [](const auto& value) { return value ? Cell(*value) : Cell(); };
+tables::Table scaling_table(std::span<const ScalingPoint> points) {
+  tables::Table table(
+      "schemes", "Schemes: how machines grow with their nodes",
+      {{"machine", tables::ColumnType::text, "", "file of the machine"},
+       {"scheme", tables::ColumnType::text, "", "its parallel scheme"},
+       {"nodes", tables::ColumnType::integer, "1", "processor nodes of all clusters"},
+       figure_column("end"),
+       {"one_node", tables::ColumnType::integer, "ps", "time of the frame with one node"},
+       figure_column("speed_up"),
+       figure_column("efficiency"),
+       {"limit", tables::ColumnType::text, "", "the largest part of the nodes' time"},
+       figure_column("interconnect_utilisation"),
+       figure_column("hit_ratio"),
+       {"waiting", tables::ColumnType::real, "fraction", "share of the nodes' time spent in queues"},
+       figure_column("share_idle"),
+       figure_column("network_messages"),
+       figure_column("network_bytes")});
+  const auto cell = [](const auto& value) { return value ? tables::Cell(*value) : tables::Cell(); };
   for (const ScalingPoint& point : points) {
-    table.add_row(
-        {point.machine, std::string(processors::scheme_names[static_cast<std::size_t>(point.scheme)]),
-         count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up), cell(point.efficiency),
-         std::string(name_of(point.limit)), cell(point.interconnect), cell(point.hit_ratio), point.waiting,
-         point.idle, cell(point.messages), cell(point.message_bytes)});
+    table.add_row({point.machine,
+                   std::string(processors::machine::scheme_names[static_cast<std::size_t>(point.scheme)]),
+                   tables::count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up),
+                   cell(point.efficiency), std::string(figures::name_of(point.limit)),
+                   cell(point.interconnect), cell(point.hit_ratio), point.waiting, point.idle,
+                   cell(point.messages), cell(point.message_bytes)});
   }
   return table;
 }
@@ -101,4 +103,4 @@ std::vector<ScalingPoint> points_of(std::span<const ScalingPoint> points, std::s
   return found;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

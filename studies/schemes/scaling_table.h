@@ -14,18 +14,18 @@
 #include "studies/schemes/stage_table.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 /// One machine with one number of nodes.
 struct ScalingPoint {
   std::string machine;
-  processors::Scheme scheme = processors::Scheme::image;
+  processors::machine::Scheme scheme = processors::machine::Scheme::image;
   std::uint32_t nodes = 0;
   sim::Ticks end = 0;
   sim::Ticks one_node_end = 0;
   std::optional<double> speed_up;
   std::optional<double> efficiency;
-  Limit limit = Limit::nothing;
+  figures::Limit limit = figures::Limit::nothing;
   std::optional<double> interconnect;  ///< its utilisation
   std::optional<double> hit_ratio;
   double idle = 0.0;     ///< share of the nodes' time
@@ -38,14 +38,14 @@ struct ScalingPoint {
 /// the nodes. A number that a machine cannot have (a pipeline needs a node for each stage) has no point. A
 /// pipeline's nodes are shared out as in the quickest of `stages`, if there is any.
 [[nodiscard]] std::vector<ScalingPoint> time_machines(const SchemesConfig& config,
-                                                      const processors::WorkLog& log,
+                                                      const processors::program::WorkLog& log,
                                                       std::span<const StagePoint> stages);
 
 /// "schemes": a row for each point.
-[[nodiscard]] Table scaling_table(std::span<const ScalingPoint> points);
+[[nodiscard]] tables::Table scaling_table(std::span<const ScalingPoint> points);
 
 /// The points of one machine.
 [[nodiscard]] std::vector<ScalingPoint> points_of(std::span<const ScalingPoint> points,
                                                   std::string_view machine);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

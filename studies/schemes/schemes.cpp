@@ -15,33 +15,35 @@
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
-StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
+tables::StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
   SchemesConfig schemes = read_schemes(config);
   schemes.frame.meter = meter;
-  const FunctionalRun run = run_functional(schemes.frame);
-  const processors::WorkLog& log = *run.frame.log;
+  const run::FunctionalRun run = run::run_functional(schemes.frame);
+  const processors::program::WorkLog& log = *run.frame.log;
   sim::begin_part(meter, "balancing the stages of the pipeline");
   const std::vector<StagePoint> stages = time_stages(schemes, log);
   const std::vector<ScalingPoint> points = time_machines(schemes, log, stages);
   const std::vector<CellPoint> cells = time_cells(schemes);
-  const std::vector<Claim> claims = check_arguments(points, cells, stages);
+  const std::vector<tables::Claim> claims = check_arguments(points, cells, stages);
 
-  StudyOutput output;
-  output.tables = {scaling_table(points), stage_table(stages), cell_table(cells), claim_table(claims)};
-  output.report = fmt::format("Parallel schemes on {}, {} x {}, {} rays\n\n", schemes.frame.scene, log.width,
-                              log.height, run.totals.all_rays()) +
-                  side_by_side(output.tables[0], "nodes", "machine", "speed_up", "Speed-up over one node") +
-                  "\n" + side_by_side(output.tables[0], "nodes", "machine", "efficiency", "Efficiency") +
-                  "\n" + text_of(output.tables[1]) + "\n" + text_of(output.tables[2]) + "\n" +
-                  text_of(claims);
+  tables::StudyOutput output;
+  output.tables = {scaling_table(points), stage_table(stages), cell_table(cells),
+                   tables::claim_table(claims)};
+  output.report =
+      fmt::format("Parallel schemes on {}, {} x {}, {} rays\n\n", schemes.frame.scene, log.width, log.height,
+                  run.totals.all_rays()) +
+      tables::side_by_side(output.tables[0], "nodes", "machine", "speed_up", "Speed-up over one node") +
+      "\n" + tables::side_by_side(output.tables[0], "nodes", "machine", "efficiency", "Efficiency") + "\n" +
+      tables::text_of(output.tables[1]) + "\n" + tables::text_of(output.tables[2]) + "\n" +
+      tables::text_of(claims);
   if (!schemes.structures.empty()) {
     output.tables.push_back(structure_table(time_structures(schemes)));
-    output.report += "\n" + text_of(output.tables.back());
+    output.report += "\n" + tables::text_of(output.tables.back());
   }
-  output.tables.push_back(provenance_table(config.effective_values()));
+  output.tables.push_back(tables::provenance_table(config.effective_values()));
   return output;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

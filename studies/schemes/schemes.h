@@ -6,11 +6,11 @@
 #include "sim/work_meter.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 /// Traces the scene once, times every machine from its log, and then trees of several cell sizes. Throws
 /// UserError for anything wrong with the input.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

@@ -12,7 +12,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 namespace {
 
@@ -33,19 +33,19 @@ std::filesystem::path beside(const sim::Config& config, const std::string& name)
   return std::filesystem::path(config.name()).parent_path() / name;
 }
 
-NamedMachine read_with(const std::filesystem::path& file, const FrameConfig& frame,
+NamedMachine read_with(const std::filesystem::path& file, const keys::FrameConfig& frame,
                        std::vector<std::string> assignments) {
   if (frame.structure == accel::Bvh::kind_name) {
     const auto node = static_cast<std::size_t>(frame.structure_options.bvh.node);
     assignments.emplace_back("structure.kind=bvh");
     assignments.push_back("structure.bvh_children=" + std::string(accel::bvh_node_names[node]));
   }
-  sim::Config config = sim::Config::from_file(run_schema(), file, assignments);
-  (void)read_frame(config);
+  sim::Config config = sim::Config::from_file(run::run_schema(), file, assignments);
+  (void)keys::read_frame(config);
   std::string name = file.stem().string();
   std::replace_if(
       name.begin(), name.end(), [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); }, '_');
-  NamedMachine machine{std::move(name), read_machine(config)};
+  NamedMachine machine{std::move(name), keys::read_machine(config)};
   config.refuse_unused();
   return machine;
 }
@@ -76,14 +76,14 @@ decltype(auto) named_by(const sim::Config& config, std::string_view key, const W
 
 }  // namespace
 
-NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame) {
+NamedMachine read_machine_file(const std::filesystem::path& file, const keys::FrameConfig& frame) {
   return read_with(file, frame, {});
 }
 
-NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame,
-                               std::uint32_t nodes, const processors::PipelineConfig& shares) {
+NamedMachine read_machine_file(const std::filesystem::path& file, const keys::FrameConfig& frame,
+                               std::uint32_t nodes, const processors::machine::PipelineConfig& shares) {
   std::vector<std::string> assignments = {"machine.nodes=" + std::to_string(nodes)};
-  if (read_machine_file(file, frame).config.scheme == processors::Scheme::pipeline) {
+  if (read_machine_file(file, frame).config.scheme == processors::machine::Scheme::pipeline) {
     const std::uint64_t all = std::uint64_t{shares.search} + shares.nearest + shares.shade;
     const auto part = [&](std::uint64_t share, std::uint64_t most) {
       return std::clamp<std::uint64_t>((share * nodes + all / 2) / all, 1, most);
@@ -118,21 +118,21 @@ void declare_schemes_keys(sim::Schema& schema) {
                "bvh:8_quantised");
   schema.text("schemes.stage_machine", "pipeline.toml",
               "the pipeline whose nodes are shared out among its stages in several ways; empty: none");
-  schema.integer("schemes.stage_nodes", 16, {processors::pipeline_stages, 1024}, "",
+  schema.integer("schemes.stage_nodes", 16, {processors::machine::pipeline_stages, 1024}, "",
                  "nodes of that pipeline");
 }
 
 sim::Schema schemes_schema() {
   sim::Schema schema;
-  declare_frame_keys(schema);
+  keys::declare_frame_keys(schema);
   declare_schemes_keys(schema);
-  declare_sections_of_other_commands(schema);
+  keys::declare_sections_of_other_commands(schema);
   return schema;
 }
 
 SchemesConfig read_schemes(sim::Config& config) {
   SchemesConfig schemes;
-  schemes.frame = read_one_frame(config);
+  schemes.frame = keys::read_one_frame(config);
   schemes.nodes = ascending(config, "schemes.nodes");
   schemes.cell_levels = ascending(config, "schemes.cell_levels");
   schemes.cell_objects = static_cast<std::uint32_t>(config.integer("schemes.cell_objects"));
@@ -148,10 +148,10 @@ SchemesConfig read_schemes(sim::Config& config) {
     const NamedMachine machine =
         named_by(config, "schemes.machines", [&] { return read_machine_file(file, schemes.frame); });
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
-    const std::string excess = schemes.frame.memory.excess(
-        processors::host_bytes(named_by(config, "schemes.nodes", [&] {
-                                 return read_machine_file(file, schemes.frame, most, machine.config.pipeline);
-                               }).config));
+    const std::string excess = schemes.frame.memory.excess(processors::replay::host_bytes(
+        named_by(config, "schemes.nodes", [&] {
+          return read_machine_file(file, schemes.frame, most, machine.config.pipeline);
+        }).config));
     if (!excess.empty()) {
       config.fail("schemes.nodes", "simulating that many nodes of " + sim::shown(name) + " takes" + excess);
     }
@@ -164,7 +164,7 @@ SchemesConfig read_schemes(sim::Config& config) {
                  [&] { return read_machine_file(schemes.cell_machine, schemes.frame); });
   for (const std::string& name : config.texts("schemes.structures")) {
     const NamedStructure& structure = schemes.structures.emplace_back(named_structure(config, name));
-    FrameConfig frame = schemes.frame;
+    keys::FrameConfig frame = schemes.frame;
     frame.structure = structure.kind;
     frame.structure_options.bvh.node = structure.node;
     (void)named_by(config, "schemes.cell_machine",
@@ -176,7 +176,7 @@ SchemesConfig read_schemes(sim::Config& config) {
     const NamedMachine machine = named_by(config, "schemes.stage_machine", [&] {
       return read_machine_file(schemes.stage_machine, schemes.frame);
     });
-    if (machine.config.scheme != processors::Scheme::pipeline) {
+    if (machine.config.scheme != processors::machine::Scheme::pipeline) {
       config.fail("schemes.stage_machine", "names a machine that is no pipeline");
     }
   }
@@ -184,4 +184,4 @@ SchemesConfig read_schemes(sim::Config& config) {
   return schemes;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

@@ -11,12 +11,12 @@
 #include "sim/schema.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 /// A machine of a file of its own, with so many nodes.
 struct NamedMachine {
   std::string name;  ///< of the file, without directory and .toml; other than a-z and 0-9 is a '_'
-  processors::MachineConfig config;
+  processors::machine::MachineConfig config;
 };
 
 /// A structure by the name that the configuration gives it.
@@ -27,7 +27,7 @@ struct NamedStructure {
 };
 
 struct SchemesConfig {
-  FrameConfig frame;
+  keys::FrameConfig frame;
   std::vector<std::filesystem::path> machines;  ///< files of machines whose scaling is compared
   std::vector<std::uint32_t> nodes;             ///< ascending, each once
   std::filesystem::path cell_machine;           ///< whose misses are counted over cells and structures
@@ -39,8 +39,8 @@ struct SchemesConfig {
 };
 
 /// Nodes of a cluster that a machine cannot do without.
-[[nodiscard]] constexpr std::uint32_t fewest_nodes(const processors::MachineConfig& machine) {
-  return machine.scheme == processors::Scheme::pipeline ? processors::pipeline_stages : 1;
+[[nodiscard]] constexpr std::uint32_t fewest_nodes(const processors::machine::MachineConfig& machine) {
+  return machine.scheme == processors::machine::Scheme::pipeline ? processors::machine::pipeline_stages : 1;
 }
 
 void declare_schemes_keys(sim::Schema& schema);
@@ -54,11 +54,13 @@ void declare_schemes_keys(sim::Schema& schema);
 
 /// The machine of a file, for logs of the frame: what the file says about scene, image and structure is read
 /// and left aside, but node records are as large as those of the frame's structure. Throws UserError.
-[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame);
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file,
+                                             const keys::FrameConfig& frame);
 
 /// The same with so many nodes in each cluster. A pipeline's are shared out among its stages in
 /// the proportions of `shares`, each stage at least one; it needs as many nodes as stages.
-[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file, const FrameConfig& frame,
-                                             std::uint32_t nodes, const processors::PipelineConfig& shares);
+[[nodiscard]] NamedMachine read_machine_file(const std::filesystem::path& file,
+                                             const keys::FrameConfig& frame, std::uint32_t nodes,
+                                             const processors::machine::PipelineConfig& shares);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

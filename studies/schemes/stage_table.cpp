@@ -7,24 +7,25 @@
 #include "processors/replay/replay.h"
 #include "studies/figures/flow_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 namespace {
 
 using Shares = std::array<std::uint32_t, pipeline_stages>;
 
-StagePoint time_shares(const SchemesConfig& config, const processors::WorkLog& log, const Shares& nodes) {
-  processors::PipelineConfig shares;
+StagePoint time_shares(const SchemesConfig& config, const processors::program::WorkLog& log,
+                       const Shares& nodes) {
+  processors::machine::PipelineConfig shares;
   shares.search = nodes[0];
   shares.nearest = nodes[1];
   shares.shade = nodes[2];
   const NamedMachine machine =
       read_machine_file(config.stage_machine, config.frame, config.stage_nodes, shares);
-  const processors::MachineResult result = processors::replay(log, machine.config);
+  const processors::replay::MachineResult result = processors::replay::replay(log, machine.config);
   StagePoint point;
   point.nodes = nodes;
   point.end = result.end;
-  const FlowFigures figures = flow_figures(machine.config, result);
+  const figures::FlowFigures figures = figures::flow_figures(machine.config, result);
   for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
     point.busy[stage] = figures.stages[stage].busy;
   }
@@ -37,7 +38,7 @@ std::size_t StagePoint::slowest() const {
   return static_cast<std::size_t>(std::max_element(busy.begin(), busy.end()) - busy.begin());
 }
 
-std::vector<StagePoint> time_stages(const SchemesConfig& config, const processors::WorkLog& log) {
+std::vector<StagePoint> time_stages(const SchemesConfig& config, const processors::program::WorkLog& log) {
   std::vector<StagePoint> points;
   if (config.stage_machine.empty()) {
     return points;
@@ -66,24 +67,25 @@ std::vector<StagePoint> time_stages(const SchemesConfig& config, const processor
   return points;
 }
 
-Table stage_table(std::span<const StagePoint> points) {
-  Table table("stages", "Stages: a pipeline's nodes shared out in several ways",
-              {{"step", ColumnType::integer, "1", "number of the way of sharing out"},
-               {"shares", ColumnType::text, "", "nodes that search, intersect and shade"},
-               {"stage", ColumnType::text, "", "one of the stages"},
-               {"nodes", ColumnType::integer, "1", "its nodes"},
-               {"busy", ColumnType::real, "fraction", "share of its nodes' time in which they worked"},
-               {"end", ColumnType::integer, "ps", "time of the frame"}});
+tables::Table stage_table(std::span<const StagePoint> points) {
+  tables::Table table(
+      "stages", "Stages: a pipeline's nodes shared out in several ways",
+      {{"step", tables::ColumnType::integer, "1", "number of the way of sharing out"},
+       {"shares", tables::ColumnType::text, "", "nodes that search, intersect and shade"},
+       {"stage", tables::ColumnType::text, "", "one of the stages"},
+       {"nodes", tables::ColumnType::integer, "1", "its nodes"},
+       {"busy", tables::ColumnType::real, "fraction", "share of its nodes' time in which they worked"},
+       {"end", tables::ColumnType::integer, "ps", "time of the frame"}});
   for (std::size_t step = 0; step < points.size(); ++step) {
     const StagePoint& point = points[step];
     const std::string shares = std::to_string(point.nodes[0]) + " + " + std::to_string(point.nodes[1]) +
                                " + " + std::to_string(point.nodes[2]);
     for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
-      table.add_row({count_cell(step + 1), shares, std::string(stage_names[stage]),
-                     count_cell(point.nodes[stage]), point.busy[stage], point.end});
+      table.add_row({tables::count_cell(step + 1), shares, std::string(stage_names[stage]),
+                     tables::count_cell(point.nodes[stage]), point.busy[stage], point.end});
     }
   }
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

@@ -11,10 +11,10 @@
 #include "studies/schemes/schemes_keys.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
-using processors::pipeline_stages;
-using processors::stage_names;
+using processors::flow::stage_names;
+using processors::machine::pipeline_stages;
 
 struct StagePoint {
   std::array<std::uint32_t, pipeline_stages> nodes{};
@@ -28,9 +28,9 @@ struct StagePoint {
 /// Starts with shares that are as equal as can be, then takes a node from the stage that is least busy and
 /// gives it to the one that is busiest, until a way of sharing out comes up again.
 [[nodiscard]] std::vector<StagePoint> time_stages(const SchemesConfig& config,
-                                                  const processors::WorkLog& log);
+                                                  const processors::program::WorkLog& log);
 
 /// "stages": a row for each stage of each way of sharing out.
-[[nodiscard]] Table stage_table(std::span<const StagePoint> points);
+[[nodiscard]] tables::Table stage_table(std::span<const StagePoint> points);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

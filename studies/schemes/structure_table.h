@@ -9,7 +9,7 @@
 #include "studies/schemes/tree_point.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::schemes {
 
 struct StructurePoint {
   std::string name;  ///< as in schemes.structures
@@ -19,6 +19,6 @@ struct StructurePoint {
 [[nodiscard]] std::vector<StructurePoint> time_structures(const SchemesConfig& config);
 
 /// "structures": a row for each.
-[[nodiscard]] Table structure_table(std::span<const StructurePoint> points);
+[[nodiscard]] tables::Table structure_table(std::span<const StructurePoint> points);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::schemes

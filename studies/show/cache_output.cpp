@@ -8,19 +8,20 @@
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using processors::SecondLevel;
+using processors::machine::SecondLevel;
 
 }  // namespace
 
-nlohmann::ordered_json second_level_json(const processors::MachineConfig& machine,
-                                         const processors::MachineResult& result, bool per_cache) {
-  Json object = {{"sharing", processors::second_level_names[static_cast<std::size_t>(machine.l2.sharing)]},
-                 {"line", processors::second_level_cache(machine).line}};
+nlohmann::ordered_json second_level_json(const processors::machine::MachineConfig& machine,
+                                         const processors::replay::MachineResult& result, bool per_cache) {
+  Json object = {
+      {"sharing", processors::machine::second_level_names[static_cast<std::size_t>(machine.l2.sharing)]},
+      {"line", processors::machine::second_level_cache(machine).line}};
   Json caches = nullptr;
   if (per_cache) {
     caches = Json::array();
@@ -36,7 +37,7 @@ nlohmann::ordered_json second_level_json(const processors::MachineConfig& machin
   return object;
 }
 
-std::string second_level_line(const RunResult& r) {
+std::string second_level_line(const run::RunResult& r) {
   const SecondLevel sharing = r.machine.l2.sharing;
   if (sharing == SecondLevel::none) {
     return {};
@@ -44,8 +45,9 @@ std::string second_level_line(const RunResult& r) {
   const std::optional<double> hit_ratio = r.figure("l2_hit_ratio");
   return fmt::format("second level  {}: {} look-ups, {} misses, {}\n",
                      sharing == SecondLevel::shared ? "one a cluster" : "one a node",
-                     grouped(r.count("l2_hits") + r.count("l2_misses")), grouped(r.count("l2_misses")),
-                     hit_ratio ? "hit ratio " + percent(*hit_ratio) : "never asked");
+                     tables::grouped(r.count("l2_hits") + r.count("l2_misses")),
+                     tables::grouped(r.count("l2_misses")),
+                     hit_ratio ? "hit ratio " + tables::percent(*hit_ratio) : "never asked");
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -10,14 +10,14 @@
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
-nlohmann::ordered_json context_json(const processors::MachineConfig& machine,
-                                    const processors::ContextResult& result, bool per_node) {
+nlohmann::ordered_json context_json(const processors::machine::MachineConfig& machine,
+                                    const processors::walk::ContextResult& result, bool per_node) {
   return {{"contexts", machine.contexts}, {"per_node", counters_list(result.nodes, per_node)}};
 }
 
-std::string context_lines(const RunResult& r) {
+std::string context_lines(const run::RunResult& r) {
   std::string text;
   if (r.timed.contexts.nodes.empty()) {
     return text;
@@ -25,16 +25,16 @@ std::string context_lines(const RunResult& r) {
   const auto out = std::back_inserter(text);
   if (r.machine.contexts > 1) {
     fmt::format_to(out, "contexts      {} a node, {} switches, {} waits for a line that another fetched\n",
-                   r.machine.contexts, grouped(r.count("contexts_switches")),
-                   grouped(r.count("contexts_joined")));
+                   r.machine.contexts, tables::grouped(r.count("contexts_switches")),
+                   tables::grouped(r.count("contexts_joined")));
   }
   if (r.machine.prefetch.on()) {
     const std::optional<double> useful = sim::ratio(r.count("contexts_useful"), r.count("contexts_issued"));
     fmt::format_to(out, "prefetch      {} lines, {} of them useful, {} waits for one under way, {} dropped\n",
-                   grouped(r.count("contexts_issued")), useful ? percent(*useful) : "-",
-                   grouped(r.count("contexts_late")), grouped(r.count("contexts_dropped")));
+                   tables::grouped(r.count("contexts_issued")), useful ? tables::percent(*useful) : "-",
+                   tables::grouped(r.count("contexts_late")), tables::grouped(r.count("contexts_dropped")));
   }
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

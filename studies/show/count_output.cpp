@@ -13,14 +13,14 @@
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using processors::AttributionCounts;
-using processors::AttributionRow;
-using processors::CacheCountResult;
+using processors::walk::AttributionCounts;
+using processors::walk::AttributionRow;
+using processors::walk::CacheCountResult;
 
 std::string_view name_of(memory::RecordKind kind) {
   return memory::record_kind_names[static_cast<std::size_t>(kind)];
@@ -29,7 +29,7 @@ std::string_view name_of(memory::RecordKind kind) {
 std::string_view work_of(const AttributionRow& row) { return row.splitting ? "split" : "trace"; }
 
 std::string percent_of(std::int64_t part, std::int64_t whole) {
-  return percent(sim::ratio(part, whole).value_or(0.0));
+  return tables::percent(sim::ratio(part, whole).value_or(0.0));
 }
 
 // Sums of the rows by what `key` makes of them.
@@ -42,7 +42,7 @@ auto sums_by(const std::vector<AttributionRow>& rows, const Key& key) {
   return sums;
 }
 
-void attribution_lines(std::string& text, const RunResult& r) {
+void attribution_lines(std::string& text, const run::RunResult& r) {
   const std::vector<AttributionRow>& rows = *r.timed.counts.attribution;
   AttributionCounts all;
   std::vector<AttributionRow> traced;
@@ -65,7 +65,7 @@ void attribution_lines(std::string& text, const RunResult& r) {
     line(level == 0 ? "materials, texels" : "level " + std::to_string(level), counts);
   }
   for (const auto& [ray, counts] : sums_by(traced, [](const AttributionRow& row) { return row.ray; })) {
-    line(std::string(processors::ray_kind_names[static_cast<std::size_t>(ray)]) + " rays", counts);
+    line(std::string(processors::program::ray_kind_names[static_cast<std::size_t>(ray)]) + " rays", counts);
   }
   for (const auto& [bounce, counts] : sums_by(traced, [](const AttributionRow& row) { return row.bounce; })) {
     line("bounce " + std::to_string(bounce), counts);
@@ -75,7 +75,7 @@ void attribution_lines(std::string& text, const RunResult& r) {
   }
 }
 
-void class_lines(std::string& text, const RunResult& r) {
+void class_lines(std::string& text, const run::RunResult& r) {
   const TextColumns table = {14, std::vector<int>(memory::miss_classes, 15)};
   text += "\n" + table.row("misses", {memory::miss_class_names.begin(), memory::miss_class_names.end()});
   const auto line = [&](const std::string& name) {
@@ -107,12 +107,12 @@ nlohmann::ordered_json counts_json(const CacheCountResult& counts) {
   if (counts.attribution) {
     Json rows = Json::array();
     for (const AttributionRow& row : *counts.attribution) {
-      Json& cell =
-          rows.emplace_back(Json{{"record", name_of(row.record)},
-                                 {"level", row.level},
-                                 {"ray", processors::ray_kind_names[static_cast<std::size_t>(row.ray)]},
-                                 {"bounce", row.bounce},
-                                 {"work", work_of(row)}});
+      Json& cell = rows.emplace_back(
+          Json{{"record", name_of(row.record)},
+               {"level", row.level},
+               {"ray", processors::program::ray_kind_names[static_cast<std::size_t>(row.ray)]},
+               {"bounce", row.bounce},
+               {"work", work_of(row)}});
       add_counters(cell, row.counts);
     }
     object["attribution"] = rows;
@@ -120,7 +120,7 @@ nlohmann::ordered_json counts_json(const CacheCountResult& counts) {
   return object;
 }
 
-std::string counts_lines(const RunResult& r) {
+std::string counts_lines(const run::RunResult& r) {
   std::string text;
   if (r.timed.counts.miss_classes) {
     class_lines(text, r);
@@ -141,23 +141,24 @@ std::string counts_lines(const RunResult& r) {
   return text;
 }
 
-Table attribution_table(const std::vector<AttributionRow>& rows) {
-  std::vector<Column> columns = {
-      {"record", ColumnType::text, "", "kind of record"},
-      {"level", ColumnType::integer, "1",
+tables::Table attribution_table(const std::vector<AttributionRow>& rows) {
+  std::vector<tables::Column> columns = {
+      {"record", tables::ColumnType::text, "", "kind of record"},
+      {"level", tables::ColumnType::integer, "1",
        "level of the tree node it was read for; 0 for materials and texels"},
-      {"ray", ColumnType::text, "", "kind of ray"},
-      {"bounce", ColumnType::integer, "1", "surface points between the eye and the ray's origin"},
-      {"work", ColumnType::text, "", "trace: the ray's steps; split: splitting a branch for it"}};
+      {"ray", tables::ColumnType::text, "", "kind of ray"},
+      {"bounce", tables::ColumnType::integer, "1", "surface points between the eye and the ray's origin"},
+      {"work", tables::ColumnType::text, "", "trace: the ray's steps; split: splitting a branch for it"}};
   for (const auto& counter : AttributionCounts::counters()) {
-    columns.push_back({json_name(counter), ColumnType::integer, std::string(counter.unit),
+    columns.push_back({json_name(counter), tables::ColumnType::integer, std::string(counter.unit),
                        std::string(counter.description)});
   }
-  Table table("attribution", "References, misses and waits by what they were for", columns);
+  tables::Table table("attribution", "References, misses and waits by what they were for", columns);
   for (const AttributionRow& row : rows) {
-    std::vector<Cell> cells = {std::string(name_of(row.record)), std::int64_t{row.level},
-                               std::string(processors::ray_kind_names[static_cast<std::size_t>(row.ray)]),
-                               std::int64_t{row.bounce}, std::string(work_of(row))};
+    std::vector<tables::Cell> cells = {
+        std::string(name_of(row.record)), std::int64_t{row.level},
+        std::string(processors::program::ray_kind_names[static_cast<std::size_t>(row.ray)]),
+        std::int64_t{row.bounce}, std::string(work_of(row))};
     sim::for_each_counter(row.counts,
                           [&](const auto& /*counter*/, std::int64_t value) { cells.emplace_back(value); });
     table.add_row(std::move(cells));
@@ -165,4 +166,4 @@ Table attribution_table(const std::vector<AttributionRow>& rows) {
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

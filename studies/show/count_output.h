@@ -9,15 +9,15 @@
 #include "studies/run/run_result.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// The field machine.counts, as docs/result-schema.md describes it.
-[[nodiscard]] nlohmann::ordered_json counts_json(const processors::CacheCountResult& counts);
+[[nodiscard]] nlohmann::ordered_json counts_json(const processors::walk::CacheCountResult& counts);
 
 /// Lines of the summary; empty when nothing was asked for.
-[[nodiscard]] std::string counts_lines(const RunResult& result);
+[[nodiscard]] std::string counts_lines(const run::RunResult& result);
 
 /// The table "attribution": a row for each cell that is not empty.
-[[nodiscard]] Table attribution_table(const std::vector<processors::AttributionRow>& rows);
+[[nodiscard]] tables::Table attribution_table(const std::vector<processors::walk::AttributionRow>& rows);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

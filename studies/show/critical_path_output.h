@@ -6,13 +6,13 @@
 
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// Adds the field critical_path to the object `machine`, as docs/result-schema.md describes it, if the path
 /// was recorded; with `nodes` also the list of nodes.
-void add_critical_path(const RunResult& result, bool nodes, nlohmann::ordered_json& machine);
+void add_critical_path(const run::RunResult& result, bool nodes, nlohmann::ordered_json& machine);
 
 /// Lines of the summary; none if the path was not recorded.
-[[nodiscard]] std::string critical_path_lines(const RunResult& result);
+[[nodiscard]] std::string critical_path_lines(const run::RunResult& result);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -8,11 +8,11 @@
 
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
-using processors::EnergyResult;
+using processors::energy::EnergyResult;
 
 double in_joules(std::int64_t femtojoules) { return static_cast<double>(femtojoules) / 1e15; }
 
@@ -22,25 +22,25 @@ double share(std::int64_t part, const EnergyResult& energy) {
 
 }  // namespace
 
-std::string energy_lines(const RunResult& result) {
+std::string energy_lines(const run::RunResult& result) {
   std::string text;
   if (!result.timed.energy) {
     return text;
   }
   const EnergyResult& energy = *result.timed.energy;
   constexpr auto counters = EnergyResult::counters();
-  const auto* const end = counters.begin() + processors::energy_parts;
+  const auto* const end = counters.begin() + processors::energy::energy_parts;
   const auto* const largest = std::max_element(counters.begin(), end, [&](const auto& a, const auto& b) {
     return energy.*a.member < energy.*b.member;
   });
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "\nenergy        {} a frame, {:.3g} W; its largest part is {} ({:.2f} %)\n",
-                 joules(in_joules(energy.total)), result.figure("power").value_or(0.0), largest->name,
+                 tables::joules(in_joules(energy.total)), result.figure("power").value_or(0.0), largest->name,
                  share(energy.*largest->member, energy));
   for (const auto* part = counters.begin(); part != end; ++part) {
     if (energy.*part->member > 0) {
-      fmt::format_to(out, "  {:<14}{:>12} {:>8.2f} %\n", part->name, joules(in_joules(energy.*part->member)),
-                     share(energy.*part->member, energy));
+      fmt::format_to(out, "  {:<14}{:>12} {:>8.2f} %\n", part->name,
+                     tables::joules(in_joules(energy.*part->member)), share(energy.*part->member, energy));
     }
   }
   fmt::format_to(out, "  {:.4g} rays a joule, {:.4g} uJ s, {:.4g} mm2 of nodes and caches\n",
@@ -49,4 +49,4 @@ std::string energy_lines(const RunResult& result) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -5,9 +5,9 @@
 
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// Energy and power of the frame, its parts, the machine's area; empty where no energy is worked out.
-[[nodiscard]] std::string energy_lines(const RunResult& result);
+[[nodiscard]] std::string energy_lines(const run::RunResult& result);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -10,25 +10,25 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/run/frame_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
-std::string_view merge_of(const FigureEntry& figure) {
-  return merge_names.at(static_cast<std::size_t>(figure.merge));
+std::string_view merge_of(const figures::FigureEntry& figure) {
+  return figures::merge_names.at(static_cast<std::size_t>(figure.merge));
 }
-std::string_view better_of(const FigureEntry& figure) {
-  return better_names.at(static_cast<std::size_t>(figure.better));
+std::string_view better_of(const figures::FigureEntry& figure) {
+  return figures::better_names.at(static_cast<std::size_t>(figure.better));
 }
 
-void list_text(std::string_view title, std::span<const FigureEntry> figures, std::string& text) {
+void list_text(std::string_view title, std::span<const figures::FigureEntry> figures, std::string& text) {
   std::size_t width = 0;
-  for (const FigureEntry& figure : figures) {
+  for (const figures::FigureEntry& figure : figures) {
     width = std::max(width, figure.name.size());
   }
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", title);
-  for (const FigureEntry& figure : figures) {
+  for (const figures::FigureEntry& figure : figures) {
     fmt::format_to(out, "  {:<{}}  {:<8}  {:<7}  {:<6}  {}\n", figure.name, width, figure.unit,
                    merge_of(figure), better_of(figure), figure.description);
     if (figure.formula) {
@@ -37,10 +37,10 @@ void list_text(std::string_view title, std::span<const FigureEntry> figures, std
   }
 }
 
-void list_counted(std::string_view title, std::span<const FigureEntry> figures, std::string& text) {
+void list_counted(std::string_view title, std::span<const figures::FigureEntry> figures, std::string& text) {
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "\n## {}\n\n| figure | unit | merge | better | what |\n|---|---|---|---|---|\n", title);
-  for (const FigureEntry& figure : figures) {
+  for (const figures::FigureEntry& figure : figures) {
     fmt::format_to(out, "| `{}` | {} | {} | {} | {} |\n", figure.name, figure.unit, merge_of(figure),
                    better_of(figure), figure.description);
   }
@@ -50,9 +50,9 @@ void list_counted(std::string_view title, std::span<const FigureEntry> figures, 
 
 std::string list_figures_as_text() {
   std::string text = "name, unit, how parts make it, which is better, what it is\n\n";
-  list_text("Machine, derived", derived_figures(), text);
-  list_text("\nMachine, counted", counted_figures(), text);
-  list_text("\nFrame", frame_figures(), text);
+  list_text("Machine, derived", figures::derived_figures(), text);
+  list_text("\nMachine, counted", figures::counted_figures(), text);
+  list_text("\nFrame", run::frame_figures(), text);
   return text;
 }
 
@@ -76,13 +76,13 @@ std::string list_figures_as_markdown() {
       "measured against:\nin a run it is the same machine with one node.\n\n"
       "| figure | unit | better | formula | what |\n|---|---|---|---|---|\n";
   const auto out = std::back_inserter(text);
-  for (const FigureEntry& figure : derived_figures()) {
+  for (const figures::FigureEntry& figure : figures::derived_figures()) {
     fmt::format_to(out, "| `{}` | {} | {} | `{}` | {} |\n", figure.name, figure.unit, better_of(figure),
                    figure.formula->text(), figure.description);
   }
-  list_counted("Counted figures of a machine", counted_figures(), text);
-  list_counted("Figures of a frame", frame_figures(), text);
+  list_counted("Counted figures of a machine", figures::counted_figures(), text);
+  list_counted("Figures of a frame", run::frame_figures(), text);
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 [[nodiscard]] std::string list_figures_as_text();
 [[nodiscard]] std::string list_figures_as_markdown();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

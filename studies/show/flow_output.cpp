@@ -11,16 +11,16 @@
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using processors::MachineConfig;
-using processors::MachineResult;
-using processors::Scheme;
+using processors::machine::MachineConfig;
+using processors::machine::Scheme;
+using processors::replay::MachineResult;
 
-Json load_json(const StageLoad& load) {
+Json load_json(const figures::StageLoad& load) {
   return {{"name", load.name},
           {"nodes", load.nodes},
           {"busy", load.busy},
@@ -30,7 +30,7 @@ Json load_json(const StageLoad& load) {
           {"longest_queue", load.longest_queue}};
 }
 
-Json networks_json(const processors::FlowResult& flow) {
+Json networks_json(const processors::flow::FlowResult& flow) {
   Json networks = Json::array();
   for (const memory::NetworkStatistics& network : flow.networks) {
     Json object = counters_json(network);
@@ -40,29 +40,29 @@ Json networks_json(const processors::FlowResult& flow) {
   return networks;
 }
 
-double figure(const RunResult& r, const std::string& name) { return r.figure(name).value_or(0.0); }
+double figure(const run::RunResult& r, const std::string& name) { return r.figure(name).value_or(0.0); }
 
-std::string bytes_of(const RunResult& r, std::string_view figure) {
-  return bytes(static_cast<double>(r.count(figure)));
+std::string bytes_of(const run::RunResult& r, std::string_view figure) {
+  return tables::bytes(static_cast<double>(r.count(figure)));
 }
 
-void load_line(std::back_insert_iterator<std::string> out, const StageLoad& load) {
-  fmt::format_to(out, "  {:<12}{}, {} busy (the busiest {}", load.name, counted(load.nodes, "node"),
-                 rough_percent(load.busy), rough_percent(load.busiest));
+void load_line(std::back_insert_iterator<std::string> out, const figures::StageLoad& load) {
+  fmt::format_to(out, "  {:<12}{}, {} busy (the busiest {}", load.name, tables::counted(load.nodes, "node"),
+                 tables::rough_percent(load.busy), tables::rough_percent(load.busiest));
   if (const std::optional<double> imbalance = load.imbalance()) {
     fmt::format_to(out, ", imbalance {:.2f}", *imbalance);
   }
-  fmt::format_to(out, "), {} before full queues, longest queue {}\n", rough_percent(load.queue_full),
+  fmt::format_to(out, "), {} before full queues, longest queue {}\n", tables::rough_percent(load.queue_full),
                  load.longest_queue);
 }
 
 }  // namespace
 
 nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResult& result, bool per_node) {
-  const FlowFigures figures = flow_figures(machine, result);
-  const processors::FlowResult& flow = result.flow;
+  const figures::FlowFigures figures = figures::flow_figures(machine, result);
+  const processors::flow::FlowResult& flow = result.flow;
   Json stages = Json::array();
-  for (const StageLoad& stage : figures.stages) {
+  for (const figures::StageLoad& stage : figures.stages) {
     stages.push_back(load_json(stage));
   }
   Json nodes = nullptr;
@@ -79,23 +79,23 @@ nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResu
           {"per_node", nodes}};
 }
 
-std::string flow_lines(const RunResult& r) {
+std::string flow_lines(const run::RunResult& r) {
   const MachineConfig& machine = r.machine;
   std::string text;
   if (machine.scheme == Scheme::image) {
     return text;
   }
   const auto out = std::back_inserter(text);
-  const FlowFigures figures = flow_figures(machine, r.timed);
+  const figures::FlowFigures figures = figures::flow_figures(machine, r.timed);
   fmt::format_to(out, "\nrays          {}, at most {} in flight, at most {} set aside at a node\n",
-                 grouped(r.count("flow_rays")), grouped(r.count("flow_most_in_flight")),
-                 grouped(r.count("flow_most_set_aside")));
+                 tables::grouped(r.count("flow_rays")), tables::grouped(r.count("flow_most_in_flight")),
+                 tables::grouped(r.count("flow_most_set_aside")));
   fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n",
-                 grouped(r.count("network_messages")), figure(r, "messages_a_ray"),
+                 tables::grouped(r.count("network_messages")), figure(r, "messages_a_ray"),
                  bytes_of(r, "network_bytes"), figure(r, "message_bytes_a_ray"));
   fmt::format_to(out, "  queues      mean wait {}\n",
-                 seconds(static_cast<sim::Ticks>(figure(r, "mean_queue_wait"))));
-  for (const StageLoad& stage : figures.stages) {
+                 tables::seconds(static_cast<sim::Ticks>(figure(r, "mean_queue_wait"))));
+  for (const figures::StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
   load_line(out, figures.all);
@@ -103,27 +103,27 @@ std::string flow_lines(const RunResult& r) {
     fmt::format_to(out, "  memory      none in the nodes: the database is in the clusters' memories\n");
   } else {
     fmt::format_to(out, "  memory      of a node: {} to {}, mean {}\n", bytes_of(r, "flow_least_memory"),
-                   bytes_of(r, "flow_most_memory"), bytes(figure(r, "mean_node_memory")));
+                   bytes_of(r, "flow_most_memory"), tables::bytes(figure(r, "mean_node_memory")));
   }
   if (machine.scheme == Scheme::space) {
     fmt::format_to(out, "  regions     {}, below {} nodes that all have; {} primitives more than once\n",
-                   grouped(r.count("regions")), grouped(r.count("top_nodes")),
-                   grouped(r.count("duplicated_primitives")));
-    if (machine.space.policy == processors::RegionPolicy::sampled) {
+                   tables::grouped(r.count("regions")), tables::grouped(r.count("top_nodes")),
+                   tables::grouped(r.count("duplicated_primitives")));
+    if (machine.space.policy == processors::machine::RegionPolicy::sampled) {
       fmt::format_to(out, "  pre-pass    {} of one node's computing before the frame\n",
-                     seconds(r.count("sampling_work")));
+                     tables::seconds(r.count("sampling_work")));
     }
   }
   fmt::format_to(out, "network       {}",
                  memory::network_kind_names[static_cast<std::size_t>(machine.network.kind)]);
   if (const std::optional<double> busy = r.figure("network_utilisation")) {
     fmt::format_to(out, ", links {} busy, {:.1f} hops a message, mean wait {}, longest {}",
-                   rough_percent(*busy), figure(r, "hops_a_message"),
-                   seconds(static_cast<sim::Ticks>(figure(r, "mean_network_wait"))),
-                   seconds(r.count("network_wait_max")));
+                   tables::rough_percent(*busy), figure(r, "hops_a_message"),
+                   tables::seconds(static_cast<sim::Ticks>(figure(r, "mean_network_wait"))),
+                   tables::seconds(r.count("network_wait_max")));
   }
   text += "\n";
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

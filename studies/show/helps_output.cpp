@@ -11,52 +11,53 @@
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(Outcome outcome) {
+const char* name_of(helps::Outcome outcome) {
   switch (outcome) {
-    case Outcome::measured:
+    case helps::Outcome::measured:
       return "measured";
-    case Outcome::needless:
+    case helps::Outcome::needless:
       return "needless";
-    case Outcome::work:
+    case helps::Outcome::work:
       return "too much work";
-    case Outcome::memory:
+    case helps::Outcome::memory:
       return "too much memory";
-    case Outcome::uncounted:
+    case helps::Outcome::uncounted:
       break;
   }
   return "too long to count";
 }
 
-std::string other_steps(std::size_t count) { return counted(count, "other step"); }
+std::string other_steps(std::size_t count) { return tables::counted(count, "other step"); }
 
-Json change_json(const WhatHelps& what, const std::optional<MeasuredChange>& change) {
+Json change_json(const helps::WhatHelps& what, const std::optional<helps::MeasuredChange>& change) {
   if (!change) {
     return nullptr;
   }
   Json keys = Json::object();
-  for (const KeyChange& key : change->keys) {
-    keys[key.key] = {{"from", setting_value(key.key, key.from)}, {"to", setting_value(key.key, key.to)}};
+  for (const helps::KeyChange& key : change->keys) {
+    keys[key.key] = {{"from", keys::setting_value(key.key, key.from)},
+                     {"to", keys::setting_value(key.key, key.to)}};
   }
   return {{"keys", keys},
           {"outcome", name_of(change->outcome)},
           {"frame_time_ps", change->end ? Json(*change->end) : Json(nullptr)},
           {"saved", optional_json(change->saved)},
-          {"gain", optional_json(gain_of(what, *change))},
+          {"gain", optional_json(helps::gain_of(what, *change))},
           {"most_saved", change->most_saved},
           {"price", optional_json(change->price)}};
 }
 
 }  // namespace
 
-Json helps_json(const WhatHelps& what) {
+Json helps_json(const helps::WhatHelps& what) {
   Json resources = Json::array();
-  for (const Help& help : what.helps) {
+  for (const helps::Help& help : what.helps) {
     resources.push_back({{"resource", help.name},
                          {"step", change_json(what, help.step)},
                          {"best", change_json(what, help.best)}});
@@ -70,25 +71,25 @@ Json helps_json(const WhatHelps& what) {
   return {{"measured", what.measured}, {"sentence", what.sentence}, {"pair", pair}, {"resources", resources}};
 }
 
-std::string helps_lines(const WhatHelps& what) {
+std::string helps_lines(const helps::WhatHelps& what) {
   std::string text = fmt::format("\nwhat helps    {}\n", what.sentence);
   const auto out = std::back_inserter(text);
   if (!what.measured) {
     return text;
   }
-  const std::vector<const Help*> helps = best_helps(what);
+  const std::vector<const helps::Help*> helps = helps::best_helps(what);
   const char* label = "then";
-  for (const Help* const help : helps) {
-    if (!ties_with(*helps[0], *help)) {
-      fmt::format_to(out, "  {:<12}{}\n", label, gain_text(*help));
+  for (const helps::Help* const help : helps) {
+    if (!helps::ties_with(*helps[0], *help)) {
+      fmt::format_to(out, "  {:<12}{}\n", label, helps::gain_text(*help));
       label = "";
     }
   }
   label = "not tried";
-  const Unreplayed left = unreplayed(what);
+  const helps::Unreplayed left = helps::unreplayed(what);
   if (left.needless > 0) {
     fmt::format_to(out, "  {:<12}{} that can save {} at most\n", label, other_steps(left.needless),
-                   rough_percent(left.most_saved));
+                   tables::rough_percent(left.most_saved));
     label = "";
   }
   if (left.work > 0) {
@@ -102,4 +103,4 @@ std::string helps_lines(const WhatHelps& what) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -6,12 +6,12 @@
 
 #include "studies/helps/what_helps.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// The field machine.what_helps, as docs/result-schema.md describes it.
-[[nodiscard]] nlohmann::ordered_json helps_json(const WhatHelps& what);
+[[nodiscard]] nlohmann::ordered_json helps_json(const helps::WhatHelps& what);
 
 /// Lines of the summary: the sentence, the next best steps, and how many were not replayed.
-[[nodiscard]] std::string helps_lines(const WhatHelps& what);
+[[nodiscard]] std::string helps_lines(const helps::WhatHelps& what);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

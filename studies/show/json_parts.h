@@ -9,7 +9,7 @@
 
 #include "sim/statistics.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// The value, or null.
 [[nodiscard]] inline nlohmann::ordered_json optional_json(std::optional<double> value) {
@@ -48,4 +48,4 @@ template <class List>
   return list;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -10,7 +10,7 @@
 #include "sim/nearest.h"
 #include "sim/shown.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
@@ -72,4 +72,4 @@ std::string keys_as_json(const sim::Schema& schema, std::string_view only) {
   return keys.dump(2) + "\n";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -8,7 +8,7 @@
 
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// `only`: the name of a key or section; empty: all. Throws UserError when there is none of this name.
 [[nodiscard]] std::string keys_as_text(const sim::Schema& schema, std::string_view only);
@@ -19,4 +19,4 @@ namespace marti::studies {
 /// A limit of a key's range as JSON; null for none.
 [[nodiscard]] nlohmann::ordered_json json_of_bound(const std::optional<sim::Value>& bound);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

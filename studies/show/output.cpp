@@ -14,32 +14,34 @@
 #include "studies/tables/pending_files.h"
 #include "studies/tables/run_files.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 constexpr const char* timeline_name = "timeline.json";
 
-void add_image(const processors::Image& image, const std::string& name, PendingFiles& files) {
-  write_exr(image, files.add(name + ".exr"));
-  write_png(image, files.add(name + ".png"));
+void add_image(const processors::program::Image& image, const std::string& name,
+               tables::PendingFiles& files) {
+  host::write_exr(image, files.add(name + ".exr"));
+  host::write_png(image, files.add(name + ".png"));
 }
 
-void add_files(const RunResult& result, PendingFiles& files) {
+void add_files(const run::RunResult& result, tables::PendingFiles& files) {
   add_image(result.functional.frame.image, "image", files);
   if (result.functional.voxel_cut && result.functional.voxel_cut->exact) {
     add_image(result.functional.voxel_cut->exact->image, "exact", files);
   }
   if (result.heat_map) {
-    add_heat_files(*result.heat_map, files);
+    run::add_heat_files(*result.heat_map, files);
   }
   if (result.timed.counts.attribution) {
-    files.write("attribution.csv", csv_of(attribution_table(*result.timed.counts.attribution)));
+    files.write("attribution.csv", tables::csv_of(attribution_table(*result.timed.counts.attribution)));
   }
   if (result.working_set) {
-    const Table table = working_set_table(*result.working_set);
-    files.write("working_set.csv", csv_of(table));
-    files.write("working_set.vl.json", fill_chart(chart_named(chart_specifications(), table.name()), table));
+    const tables::Table table = working_set_table(*result.working_set);
+    files.write("working_set.csv", tables::csv_of(table));
+    files.write("working_set.vl.json",
+                tables::fill_chart(tables::chart_named(tables::chart_specifications(), table.name()), table));
   }
 }
 
@@ -54,16 +56,16 @@ sim::MadeDirectory prepare_output(const std::filesystem::path& directory) {
   return made;
 }
 
-WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory) {
-  const SignalsHeld held;
-  const std::map<std::string, std::string> earlier = files_of_run_in(directory);
-  PendingFiles files(directory);
+WrittenRun write_output(const run::RunResult& result, const std::filesystem::path& directory) {
+  const host::SignalsHeld held;
+  const std::map<std::string, std::string> earlier = tables::files_of_run_in(directory);
+  tables::PendingFiles files(directory);
   add_files(result, files);
   std::map<std::string, std::string> hashes = files.hashes();
   if (result.timeline) {
     hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
   }
-  WrittenRun written{{}, json_of(result, hashes)};
+  WrittenRun written{{}, run::json_of(result, hashes)};
   files.write("result.json", written.json);
   if (result.timeline) {
     result.timeline->commit();
@@ -74,10 +76,10 @@ WrittenRun write_output(const RunResult& result, const std::filesystem::path& di
   }
   for (const auto& [name, hash] : earlier) {
     if (!hashes.contains(name)) {
-      remove_run_file(directory / name, hash);
+      tables::remove_run_file(directory / name, hash);
     }
   }
   return written;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

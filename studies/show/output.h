@@ -8,7 +8,7 @@
 #include "sim/made_directory.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// Makes sure that `directory` exists and can be written to, so that a long run does not end in a refusal. To
 /// be kept until the files are written: what was made and is empty then is removed. An empty name makes
@@ -24,6 +24,6 @@ struct WrittenRun {
 /// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together
 /// at the end; then removes the files of an earlier run that this one lacks. Signals that end the program
 /// wait until that is done. Throws UserError with the reason; older results are unchanged then.
-WrittenRun write_output(const RunResult& result, const std::filesystem::path& directory);
+WrittenRun write_output(const run::RunResult& result, const std::filesystem::path& directory);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

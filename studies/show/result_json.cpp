@@ -20,7 +20,7 @@
 #include "studies/tables/json_table.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
@@ -41,7 +41,7 @@ Json named(const Names& names, const Values& values) {
   return object;
 }
 
-Json scene_json(const RunResult& r) {
+Json scene_json(const run::RunResult& r) {
   const scenes::SceneFacts& s = r.functional.scene;
   Json bounds = nullptr;
   if (!s.bounds.empty()) {
@@ -51,7 +51,7 @@ Json scene_json(const RunResult& r) {
   return {{"source", r.frame_config.scene}, {"bounds", bounds}, {"notes", r.functional.notes}};
 }
 
-Json structure_json(const RunResult& r) {
+Json structure_json(const run::RunResult& r) {
   Json levels = Json::array();
   for (const accel::LevelStatistics& level : r.functional.levels) {
     levels.push_back({{"branches", level.branches},
@@ -68,26 +68,26 @@ Json structure_json(const RunResult& r) {
 }
 
 // Figures without a value are left out.
-Json figures_json(const RunResult& r) {
+Json figures_json(const run::RunResult& r) {
   Json frame = {{"scene", r.functional.scene.name},
                 {"image_hash", hash(r.functional.image_hash)},
                 {"hit_hash", hash(r.functional.frame.hit_hash)}};
-  for_each_count(frame_figures(), frame_counts(r.functional),
-                 [&frame](const std::string& name, std::int64_t value) { frame[name] = value; });
+  figures::for_each_count(run::frame_figures(), run::frame_counts(r.functional),
+                          [&frame](const std::string& name, std::int64_t value) { frame[name] = value; });
   Json machine = Json::object();
   const auto enter = [&machine](const std::string& name, auto value) { machine[name] = value; };
-  for_each_count(counted_figures(), r.counts, enter);
-  for_each_derived({&r.counts, &r.one_node_counts}, enter);
+  figures::for_each_count(figures::counted_figures(), r.counts, enter);
+  figures::for_each_derived({&r.counts, &r.one_node_counts}, enter);
   return {{"frame", frame}, {"machine", machine}};
 }
 
-Json log_json(const processors::LogTotals& t) {
+Json log_json(const processors::program::LogTotals& t) {
   return {{"bytes", t.bytes},     {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
           {"lookups", t.lookups}, {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
           {"cuts", t.cuts},       {"passes", t.passes}};
 }
 
-Json use_json(const DatabaseUse& use) {
+Json use_json(const run::DatabaseUse& use) {
   return {{"nodes", use.nodes},
           {"entries", use.entries},
           {"primitives", use.primitives},
@@ -95,14 +95,14 @@ Json use_json(const DatabaseUse& use) {
           {"level_nodes", use.level_nodes}};
 }
 
-Json voxel_json(const RunResult& r) {
+Json voxel_json(const run::RunResult& r) {
   if (!r.functional.voxel_cut) {
     return nullptr;
   }
-  const VoxelReport& report = *r.functional.voxel_cut;
+  const run::VoxelReport& report = *r.functional.voxel_cut;
   Json exact = nullptr;
   if (report.exact) {
-    const ImageError& error = report.exact->error;
+    const run::ImageError& error = report.exact->error;
     exact = {{"rmse", error.rmse},
              {"largest", error.largest},
              {"changed_pixels", error.changed},
@@ -111,11 +111,11 @@ Json voxel_json(const RunResult& r) {
              {"rays", report.exact->totals.rays},
              {"use", use_json(report.exact->use)}};
   }
-  const processors::Frame& frame = r.functional.frame;
+  const processors::program::Frame& frame = r.functional.frame;
   return {{"threshold_pixels", r.frame_config.render.voxel_cut},
           {"voxels", frame.voxels},
           {"first_level", frame.first_voxel_level},
-          {"rays", named(processors::ray_kind_names, frame.rays.voxels)},
+          {"rays", named(processors::program::ray_kind_names, frame.rays.voxels)},
           {"use", use_json(report.use)},
           {"exact", exact}};
 }
@@ -130,12 +130,12 @@ Json wait_json(const memory::WaitStatistics& w) {
   return object;
 }
 
-Json clusters_json(const processors::MachineResult& result) {
+Json clusters_json(const processors::replay::MachineResult& result) {
   if (result.clusters.size() > most_listed) {
     return nullptr;
   }
   Json clusters = Json::array();
-  for (const processors::ClusterResult& cluster : result.clusters) {
+  for (const processors::replay::ClusterResult& cluster : result.clusters) {
     Json interconnect = counters_json(cluster.interconnect);
     interconnect["waits"] = wait_json(cluster.interconnect.waits);
     Json banks = nullptr;
@@ -164,28 +164,28 @@ Json clusters_json(const processors::MachineResult& result) {
   return clusters;
 }
 
-Json nodes_json(const processors::MachineResult& result) {
+Json nodes_json(const processors::replay::MachineResult& result) {
   if (result.nodes.size() > most_listed) {
     return nullptr;
   }
   Json nodes = Json::array();
-  for (const processors::NodeStatistics& node : result.nodes) {
+  for (const processors::cost::NodeStatistics& node : result.nodes) {
     Json object = counters_json(node);
     object["hits"] = node.references.all_hits();
     object["misses"] = node.references.all_misses();
     object["steps"] = counters_json(node.steps);
-    object["time_ps"] = named(processors::activity_names, node.time);
+    object["time_ps"] = named(processors::cost::activity_names, node.time);
     nodes.push_back(object);
   }
   return nodes;
 }
 
 // What the colours of each map stand for.
-Json heat_maps_json(const HeatMap& map) {
+Json heat_maps_json(const run::HeatMap& map) {
   Json object = Json::object();
-  for (std::size_t i = 0; i < heats; ++i) {
-    const Legend legend = legend_of(map.figures(static_cast<Heat>(i)));
-    object[std::string(heat_names[i])] = {
+  for (std::size_t i = 0; i < run::heats; ++i) {
+    const run::Legend legend = run::legend_of(map.figures(static_cast<run::Heat>(i)));
+    object[std::string(run::heat_names[i])] = {
         {"brightest", legend.brightest}, {"largest", legend.largest}, {"mean", legend.mean}};
   }
   return object;
@@ -201,49 +201,55 @@ Json files_json(const std::map<std::string, std::string>& files) {
 
 }  // namespace
 
+}  // namespace marti::studies::show
+
+namespace marti::studies::run {
+
 std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
-  const processors::MachineResult& timed = r.timed;
-  Json machine = {{"scheme", processors::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
-                  {"clusters", r.machine.clusters},
-                  {"nodes", r.machine.nodes},
-                  {"node_clock_period_ps", r.machine.clock.period()},
-                  {"one_node_time_ps", r.one_node.end},
-                  {"bounds", bounds_json(r)},
-                  {"what_helps", r.helps ? helps_json(*r.helps) : Json(nullptr)},
-                  {"per_cluster", clusters_json(timed)},
-                  {"per_node", nodes_json(timed)}};
-  if (timed.build.sharing != processors::Sharing::given) {
-    machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
+  const processors::replay::MachineResult& timed = r.timed;
+  show::Json machine = {
+      {"scheme", processors::machine::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
+      {"clusters", r.machine.clusters},
+      {"nodes", r.machine.nodes},
+      {"node_clock_period_ps", r.machine.clock.period()},
+      {"one_node_time_ps", r.one_node.end},
+      {"bounds", show::bounds_json(r)},
+      {"what_helps", r.helps ? show::helps_json(*r.helps) : show::Json(nullptr)},
+      {"per_cluster", show::clusters_json(timed)},
+      {"per_node", show::nodes_json(timed)}};
+  if (timed.build.sharing != processors::machine::Sharing::given) {
+    machine["build"] = show::build_json(timed.build, timed.nodes.size() <= show::most_listed);
   }
-  if (r.machine.scheme != processors::Scheme::image) {
-    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
+  if (r.machine.scheme != processors::machine::Scheme::image) {
+    machine["flow"] = show::flow_json(r.machine, timed, timed.nodes.size() <= show::most_listed);
   }
-  if (r.machine.l2.sharing != processors::SecondLevel::none) {
-    machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
+  if (r.machine.l2.sharing != processors::machine::SecondLevel::none) {
+    machine["l2"] = show::second_level_json(r.machine, timed, timed.l2.caches.size() <= show::most_listed);
   }
   if (r.machine.count.any()) {
-    machine["counts"] = counts_json(timed.counts);
+    machine["counts"] = show::counts_json(timed.counts);
   }
   if (r.working_set) {
-    machine["working_set"] = working_set_json(*r.working_set);
+    machine["working_set"] = show::working_set_json(*r.working_set);
   }
-  add_critical_path(r, timed.nodes.size() <= most_listed, machine);
+  show::add_critical_path(r, timed.nodes.size() <= show::most_listed, machine);
   if (!timed.contexts.nodes.empty()) {
-    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
+    machine["contexts"] =
+        show::context_json(r.machine, timed.contexts, timed.nodes.size() <= show::most_listed);
   }
-  Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
-                 {"config", config_json(r.config_name, r.values)},
-                 {"figures", figures_json(r)},
-                 {"scene", scene_json(r)},
-                 {"structure", structure_json(r)},
-                 {"voxel_cut", voxel_json(r)},
-                 {"plan", plan_json(r.plan)},
-                 {"machine", machine}};
+  show::Json result = {{"marti", {{"version", version}, {"schema", show::schema_version}}},
+                       {"config", keys::config_json(r.config_name, r.values)},
+                       {"figures", show::figures_json(r)},
+                       {"scene", show::scene_json(r)},
+                       {"structure", show::structure_json(r)},
+                       {"voxel_cut", show::voxel_json(r)},
+                       {"plan", plan_json(r.plan)},
+                       {"machine", machine}};
   if (r.heat_map) {
-    result["heat_maps"] = heat_maps_json(*r.heat_map);
+    result["heat_maps"] = show::heat_maps_json(*r.heat_map);
   }
-  result["files"] = files_json(files);
-  return json_text(result);
+  result["files"] = show::files_json(files);
+  return tables::json_text(result);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -7,7 +7,7 @@
 
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 double ticks(sim::Ticks value) { return static_cast<double>(value); }
 
 // The resource that bounds the frame.
-std::string_view binding(const RunResult& r) {
-  const processors::FrameBounds& bounds = r.bounds;
+std::string_view binding(const run::RunResult& r) {
+  const processors::replay::FrameBounds& bounds = r.bounds;
   const sim::Ticks least = bounds.least();
   if (least == bounds.node_work) {
     return "node_work";
@@ -27,11 +27,11 @@ std::string_view binding(const RunResult& r) {
 
 }  // namespace
 
-Json bounds_json(const RunResult& r) {
-  const processors::FrameBounds& b = r.bounds;
+Json bounds_json(const run::RunResult& r) {
+  const processors::replay::FrameBounds& b = r.bounds;
   Json prediction = nullptr;
   if (r.prediction) {
-    const processors::Prediction& p = *r.prediction;
+    const processors::replay::Prediction& p = *r.prediction;
     const std::optional<double> saturation = p.network.saturation();
     prediction = {{"cluster", p.cluster},
                   {"reads", p.reads},
@@ -57,7 +57,7 @@ Json bounds_json(const RunResult& r) {
           {"prediction", prediction}};
 }
 
-std::string loss_lines(const RunResult& r) {
+std::string loss_lines(const run::RunResult& r) {
   const double n = r.machine.all_nodes();
   const std::optional<double> speed_up = r.figure("speed_up");
   if (n == 1.0 || !speed_up) {
@@ -65,37 +65,37 @@ std::string loss_lines(const RunResult& r) {
   }
   std::string text = fmt::format("\nlost speed-up {:.2f} of {}: n - s, and its share of the nodes' time\n",
                                  n - *speed_up, r.machine.all_nodes());
-  for (const std::string_view loss : loss_names) {
+  for (const std::string_view loss : figures::loss_names) {
     std::string name(loss);
     std::replace(name.begin(), name.end(), '_', ' ');
     const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
-    text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, percent(part / n));
+    text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, tables::percent(part / n));
   }
   return text;
 }
 
-std::string bound_lines(const RunResult& r) {
-  const processors::FrameBounds& b = r.bounds;
+std::string bound_lines(const run::RunResult& r) {
+  const processors::replay::FrameBounds& b = r.bounds;
   if (r.timed.end == 0) {
     return "";
   }
-  std::string text = fmt::format("\nbounds        at least {} ({} of the frame time): a node's own work {}",
-                                 seconds(b.least()), rough_percent(ticks(b.least()) / ticks(r.timed.end)),
-                                 seconds(b.node_work));
+  std::string text = fmt::format(
+      "\nbounds        at least {} ({} of the frame time): a node's own work {}", tables::seconds(b.least()),
+      tables::rough_percent(ticks(b.least()) / ticks(r.timed.end)), tables::seconds(b.node_work));
   if (b.interconnect > 0) {
     const bool bus = r.machine.interconnect.kind == memory::InterconnectKind::bus &&
-                     r.machine.placement != processors::Placement::distributed;
-    text += fmt::format(", {} {}", bus ? "the bus" : "a link", seconds(b.interconnect));
+                     r.machine.placement != processors::machine::Placement::distributed;
+    text += fmt::format(", {} {}", bus ? "the bus" : "a link", tables::seconds(b.interconnect));
   }
   if (b.bank > 0) {
-    text += fmt::format(", a bank {}", seconds(b.bank));
+    text += fmt::format(", a bank {}", tables::seconds(b.bank));
   }
   text += "\n";
   if (!r.prediction) {
     return text;
   }
-  const processors::Prediction& p = *r.prediction;
-  const auto frame = [](double picoseconds) { return seconds(static_cast<sim::Ticks>(picoseconds)); };
+  const processors::replay::Prediction& p = *r.prediction;
+  const auto frame = [](double picoseconds) { return tables::seconds(static_cast<sim::Ticks>(picoseconds)); };
   text += fmt::format("predicted     {} by {}mean value analysis ({:+.1f} %), {} to {} by balanced jobs\n",
                       frame(p.mean_value), p.exact ? "" : "approximate ",
                       100.0 * (p.mean_value / ticks(r.timed.end) - 1.0), frame(p.balanced_low),
@@ -108,14 +108,14 @@ std::string bound_lines(const RunResult& r) {
   return text;
 }
 
-std::string record_lines(const RunResult& r) {
+std::string record_lines(const run::RunResult& r) {
   std::string text;
   if (r.heat_map) {
-    for (std::size_t i = 0; i < heats; ++i) {
-      const Legend legend = legend_of(r.heat_map->figures(static_cast<Heat>(i)));
+    for (std::size_t i = 0; i < run::heats; ++i) {
+      const run::Legend legend = run::legend_of(r.heat_map->figures(static_cast<run::Heat>(i)));
       text += fmt::format(
           "{}{:<14}{:<6} dark 0, bright {:.0f} or more (1 % of the pixels); mean {:.1f}, most {:.0f}\n",
-          i == 0 ? "\n" : "", i == 0 ? "heat map" : "", heat_names[i], legend.brightest, legend.mean,
+          i == 0 ? "\n" : "", i == 0 ? "heat map" : "", run::heat_names[i], legend.brightest, legend.mean,
           legend.largest);
     }
   }
@@ -125,14 +125,14 @@ std::string record_lines(const RunResult& r) {
       text += fmt::format(
           ", cut there: from {} on it is not complete; raise record.timeline_events or narrow it by "
           "record.timeline_from and record.timeline_to",
-          seconds(*cut));
+          tables::seconds(*cut));
     }
     if (const std::optional<sim::Ticks> cut = r.timeline->path_cut_at()) {
-      text += fmt::format(", of the critical path what is before {} is missing", seconds(*cut));
+      text += fmt::format(", of the critical path what is before {} is missing", tables::seconds(*cut));
     }
     text += "\n";
   }
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 std::string TextColumns::row(std::string_view name_of_row, const std::vector<std::string>& cells) const {
   sim::ensure(cells.size() == widths.size(), "a row has not as many cells as its table has columns");
@@ -15,4 +15,4 @@ std::string TextColumns::row(std::string_view name_of_row, const std::vector<std
   return text + "\n";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

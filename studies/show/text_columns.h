@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// The rows of a table: a name to the left, cells to the right of their columns.
 struct TextColumns {
@@ -16,4 +16,4 @@ struct TextColumns {
   [[nodiscard]] std::string row(std::string_view name_of_row, const std::vector<std::string>& cells) const;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

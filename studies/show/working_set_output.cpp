@@ -14,13 +14,13 @@
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using processors::CacheWorkingSet;
-using processors::WorkingSet;
+using processors::passes::CacheWorkingSet;
+using processors::passes::WorkingSet;
 
 struct Point {
   std::uint64_t size = 0;  // lines or ways
@@ -28,7 +28,7 @@ struct Point {
 };
 
 std::string_view name_of(const WorkingSet& set, std::size_t cache) {
-  return set.caches.size() == 1 ? std::string_view("unified") : processors::split_cache_names[cache];
+  return set.caches.size() == 1 ? std::string_view("unified") : processors::machine::split_cache_names[cache];
 }
 
 double share_of(std::int64_t part, std::int64_t whole) { return sim::ratio(part, whole).value_or(0.0); }
@@ -81,7 +81,7 @@ std::uint64_t lines_within(const memory::StackHistogram& distances, std::int64_t
 }
 
 std::string size_text(const WorkingSet& set, std::uint64_t lines) {
-  return bytes(static_cast<double>(lines) * set.line);
+  return tables::bytes(static_cast<double>(lines) * set.line);
 }
 
 void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
@@ -156,19 +156,20 @@ std::string working_set_lines(const WorkingSet& set) {
   return text;
 }
 
-Table working_set_table(const WorkingSet& set) {
-  Table table("working_set", "Misses of first-level LRU caches by size and by ways",
-              {{"cache", ColumnType::text, "", "the unified cache, or which of the split ones"},
-               {"sets", ColumnType::integer, "1", "sets; 1: fully associative"},
-               {"ways", ColumnType::integer, "1", "lines of a set"},
-               {"bytes", ColumnType::integer, "byte", "size of the cache"},
-               {"misses", ColumnType::integer, "1", "misses of all nodes' caches"},
-               {"miss_ratio", ColumnType::real, "fraction", "misses of all references"}});
+tables::Table working_set_table(const WorkingSet& set) {
+  tables::Table table(
+      "working_set", "Misses of first-level LRU caches by size and by ways",
+      {{"cache", tables::ColumnType::text, "", "the unified cache, or which of the split ones"},
+       {"sets", tables::ColumnType::integer, "1", "sets; 1: fully associative"},
+       {"ways", tables::ColumnType::integer, "1", "lines of a set"},
+       {"bytes", tables::ColumnType::integer, "byte", "size of the cache"},
+       {"misses", tables::ColumnType::integer, "1", "misses of all nodes' caches"},
+       {"miss_ratio", tables::ColumnType::real, "fraction", "misses of all references"}});
   for (std::size_t i = 0; i < set.caches.size(); ++i) {
     const CacheWorkingSet& cache = set.caches[i];
     const auto add = [&](std::uint32_t sets, const Point& point) {
-      table.add_row({std::string(name_of(set, i)), std::int64_t{sets}, count_cell(point.size),
-                     count_cell(point.size * sets * set.line), point.misses,
+      table.add_row({std::string(name_of(set, i)), std::int64_t{sets}, tables::count_cell(point.size),
+                     tables::count_cell(point.size * sets * set.line), point.misses,
                      share_of(point.misses, cache.distances.references)});
     };
     for (const Point& point : thinned(cache.distances)) {
@@ -181,4 +182,4 @@ Table working_set_table(const WorkingSet& set) {
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -8,17 +8,17 @@
 #include "processors/passes/working_set.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::show {
 
 /// The field machine.working_set, as docs/result-schema.md describes it.
-[[nodiscard]] nlohmann::ordered_json working_set_json(const processors::WorkingSet& set);
+[[nodiscard]] nlohmann::ordered_json working_set_json(const processors::passes::WorkingSet& set);
 
 /// Lines of the summary.
-[[nodiscard]] std::string working_set_lines(const processors::WorkingSet& set);
+[[nodiscard]] std::string working_set_lines(const processors::passes::WorkingSet& set);
 
 /// The table "working_set": of each cache the fully associative sizes at which its misses change, thinned so
 /// that neighbours differ by 1/256 of their size or more, with all powers of two; then all ways counted at
 /// the machine's number of sets.
-[[nodiscard]] Table working_set_table(const processors::WorkingSet& set);
+[[nodiscard]] tables::Table working_set_table(const processors::passes::WorkingSet& set);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::show

@@ -12,7 +12,7 @@
 #include "studies/stability/hostile.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -125,12 +125,12 @@ CaseOutcome machines_of_all_caches() {
   std::int64_t references = -1;
   std::int64_t fewest = -1;
   const auto time = [&](const CacheConfig& cache) {
-    processors::MachineConfig machine;
+    processors::machine::MachineConfig machine;
     machine.nodes = 3;
-    machine.packets = {2, 2, processors::PacketOrder::scanline};
-    machine.host.assignment = processors::Assignment::interleaved;
+    machine.packets = {2, 2, processors::machine::PacketOrder::scanline};
+    machine.host.assignment = processors::machine::Assignment::interleaved;
     machine.cache.cache = cache;
-    const processors::MachineResult result = processors::replay(small_log(), machine);
+    const processors::replay::MachineResult result = processors::replay::replay(small_log(), machine);
     return result.references();
   };
   const std::uint64_t all = std::uint64_t{1} << 22;
@@ -140,7 +140,7 @@ CaseOutcome machines_of_all_caches() {
         CacheConfig{4096, 32, memory::full_ways}, CacheConfig{4096, 32, 4, Replacement::plru},
         CacheConfig{4096, 32, 4, Replacement::random}, CacheConfig{3 * 32, 32, 3, Replacement::fifo},
         CacheConfig{all, 32, 1}}) {
-    const processors::ReferenceCounts counts = time(cache);
+    const processors::cost::ReferenceCounts counts = time(cache);
     if (references < 0) {
       references = counts.references();
       fewest = counts.all_misses();
@@ -149,9 +149,9 @@ CaseOutcome machines_of_all_caches() {
               (cache.size < all || counts.all_misses() == fewest));
   }
   CaseOutcome outcome = none_wrong(tally, "caches differ");
-  outcome.figure +=
-      fmt::format("; {} references, {} misses at least", grouped(static_cast<std::uint64_t>(references)),
-                  grouped(static_cast<std::uint64_t>(fewest)));
+  outcome.figure += fmt::format("; {} references, {} misses at least",
+                                tables::grouped(static_cast<std::uint64_t>(references)),
+                                tables::grouped(static_cast<std::uint64_t>(fewest)));
   return outcome;
 }
 
@@ -160,16 +160,17 @@ CaseOutcome machines_of_all_lines() {
   Tally tally;
   std::int64_t least = 0;
   for (std::uint32_t line = 1; line <= 1U << 20U; line *= 4) {
-    processors::MachineConfig machine;
+    processors::machine::MachineConfig machine;
     machine.nodes = 3;
     machine.cache.cache = {std::uint64_t{4} * line, line, 2};
-    const processors::MachineResult result = processors::replay(small_log(), machine);
+    const processors::replay::MachineResult result = processors::replay::replay(small_log(), machine);
     tally.add(result.references().all_misses() > 0 &&
               result.steps().pixels == std::int64_t{small_log().width} * small_log().height);
     least = result.references().references();
   }
   CaseOutcome outcome = none_wrong(tally, "lines differ");
-  outcome.figure += fmt::format("; {} references of the longest", grouped(static_cast<std::uint64_t>(least)));
+  outcome.figure +=
+      fmt::format("; {} references of the longest", tables::grouped(static_cast<std::uint64_t>(least)));
   return outcome;
 }
 
@@ -189,4 +190,4 @@ void add_cache_cases(std::vector<StabilityCase>& cases) {
       machines_of_all_lines);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -5,7 +5,7 @@
 
 #include "accel/brute_force.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -119,4 +119,4 @@ Tally leaks(const PlacedSphere& mesh, const Tracer& trace, std::uint32_t rays, s
   return tally;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

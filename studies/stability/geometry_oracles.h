@@ -11,7 +11,7 @@
 #include "studies/stability/icosphere.h"
 #include "studies/stability/stability_case.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// Something that traces rays: a structure, a kernel alone, or one that is broken on purpose.
 using Tracer = std::function<accel::Hit(const accel::Ray&)>;
@@ -59,4 +59,4 @@ struct PlacedSphere {
 [[nodiscard]] Tally leaks(const PlacedSphere& mesh, const Tracer& trace, std::uint32_t rays,
                           std::uint64_t seed);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -16,7 +16,7 @@
 #include "accel/ray.h"
 #include "accel/triangles.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// Uniform doubles without the library's distributions, whose results differ between implementations.
 class Random {
@@ -252,4 +252,4 @@ class RayMaker {
   Random random_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -22,7 +22,7 @@
 #include "sim/files.h"
 #include "studies/stability/geometry_oracles.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -116,7 +116,7 @@ CaseOutcome gltf_with(float value, const CaseSize& size) {
   }
   CaseOutcome outcome = none_wrong(tally, "rays differ");
   outcome.value += a->size() == triangles - 1 && notes == 1 ? 0.0 : 1.0;
-  outcome.figure += fmt::format("; {} triangles left, {} note", grouped(a->size()), notes);
+  outcome.figure += fmt::format("; {} triangles left, {} note", tables::grouped(a->size()), notes);
   return outcome;
 }
 
@@ -181,4 +181,4 @@ void add_input_cases(std::vector<StabilityCase>& cases) {
       "teapot at 0 and 1e3: no; at 1e6 and 1e9: yes", recommendation);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -11,7 +11,7 @@
 #include "studies/stability/geometry_oracles.h"
 #include "studies/stability/kernel_check.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -236,4 +236,4 @@ void add_kernel_cases(std::vector<StabilityCase>& cases) {
       closed_mesh_in_floats);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

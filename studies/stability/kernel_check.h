@@ -8,7 +8,7 @@
 #include "accel/watertight.h"
 #include "studies/stability/hostile.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 inline int sign(double x) { return x > 0.0 ? 1 : (x < 0.0 ? -1 : 0); }
 
@@ -59,4 +59,4 @@ struct TestCounter {
   }
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -7,13 +7,13 @@
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
-using processors::Scheme;
+using processors::machine::MachineConfig;
+using processors::machine::Scheme;
+using processors::replay::MachineResult;
 
 std::array<sim::Clock*, 6> clocks_of(MachineConfig& machine) {
   return {&machine.clock,       &machine.local.clock, &machine.interconnect.clock,
@@ -22,25 +22,25 @@ std::array<sim::Clock*, 6> clocks_of(MachineConfig& machine) {
 
 }  // namespace
 
-const processors::WorkLog& small_log() {
-  static const std::shared_ptr<const processors::WorkLog> log = [] {
+const processors::program::WorkLog& small_log() {
+  static const std::shared_ptr<const processors::program::WorkLog> log = [] {
     const scenes::Scene scene = scenes::make_procedural("balls:2");
     const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
     const auto structure = accel::make_structure("octree", triangles);
-    processors::RenderOptions options;
+    processors::program::RenderOptions options;
     options.width = 24;
     options.height = 16;
     options.max_depth = 3;
     options.record = true;
-    return processors::render(scene, *triangles, *structure, options).log;
+    return processors::program::render(scene, *triangles, *structure, options).log;
   }();
   return *log;
 }
 
-std::vector<NamedTiming> machines_of_every_kind(processors::Assignment assignment) {
+std::vector<NamedTiming> machines_of_every_kind(processors::machine::Assignment assignment) {
   MachineConfig base;
   base.nodes = 6;
-  base.packets = {2, 3, processors::PacketOrder::hilbert};
+  base.packets = {2, 3, processors::machine::PacketOrder::hilbert};
   base.cache.cache.size = 2048;
   base.cache.cache.ways = 2;
   base.host.assignment = assignment;
@@ -61,21 +61,22 @@ std::vector<NamedTiming> machines_of_every_kind(processors::Assignment assignmen
       [](MachineConfig& m) { m.interconnect.arbitration = memory::Arbitration::fixed_priority; });
   add("crossbar", [](MachineConfig& m) { m.interconnect.kind = memory::InterconnectKind::crossbar; });
   add("ideal interconnect", [](MachineConfig& m) { m.interconnect.kind = memory::InterconnectKind::ideal; });
-  add("no cache", [](MachineConfig& m) { m.cache.organisation = processors::CacheOrganisation::none; });
-  add("replicated", [](MachineConfig& m) { m.placement = processors::Placement::replicated; });
-  add("distributed", [](MachineConfig& m) { m.placement = processors::Placement::distributed; });
+  add("no cache",
+      [](MachineConfig& m) { m.cache.organisation = processors::machine::CacheOrganisation::none; });
+  add("replicated", [](MachineConfig& m) { m.placement = processors::machine::Placement::replicated; });
+  add("distributed", [](MachineConfig& m) { m.placement = processors::machine::Placement::distributed; });
   add("two clusters", [](MachineConfig& m) {
     m.clusters = 2;
     m.nodes = 3;
   });
   add("four contexts", [](MachineConfig& m) { m.contexts = 4; });
   add("tree built meanwhile", [](MachineConfig& m) {
-    m.build.sharing = processors::Sharing::shared;
-    m.build.initial = processors::InitialTree::level;
+    m.build.sharing = processors::machine::Sharing::shared;
+    m.build.initial = processors::machine::InitialTree::level;
   });
   add("pipeline", [](MachineConfig& m) {
     m.scheme = Scheme::pipeline;
-    m.pipeline = processors::default_stages(m.nodes);
+    m.pipeline = processors::machine::default_stages(m.nodes);
   });
   add("space", [](MachineConfig& m) { m.scheme = Scheme::space; });
   return all;
@@ -98,13 +99,13 @@ bool is_stretched(const MachineResult& short_one, const MachineResult& long_one,
     return false;
   }
   for (std::size_t k = 0; k < short_one.nodes.size(); ++k) {
-    const processors::NodeStatistics& a = short_one.nodes[k];
-    const processors::NodeStatistics& b = long_one.nodes[k];
+    const processors::cost::NodeStatistics& a = short_one.nodes[k];
+    const processors::cost::NodeStatistics& b = long_one.nodes[k];
     if (a.finish * factor != b.finish || a.packets != b.packets || a.references.hits != b.references.hits ||
         a.references.misses != b.references.misses) {
       return false;
     }
-    for (std::size_t activity = 0; activity < processors::activities; ++activity) {
+    for (std::size_t activity = 0; activity < processors::cost::activities; ++activity) {
       if (a.time[activity] * factor != b.time[activity]) {
         return false;
       }
@@ -149,4 +150,4 @@ bool same_references(const MachineResult& a, const MachineResult& b) {
   return same;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

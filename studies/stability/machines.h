@@ -9,14 +9,14 @@
 #include "processors/replay/replay.h"
 #include "studies/stability/stability_case.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// A frame of 24 x 16 pixels with shadows and reflections, rendered once.
-[[nodiscard]] const processors::WorkLog& small_log();
+[[nodiscard]] const processors::program::WorkLog& small_log();
 
 struct NamedTiming {
   std::string name;
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
 
   /// The name as the end of a case's id.
   [[nodiscard]] std::string id() const {
@@ -29,19 +29,20 @@ struct NamedTiming {
 /// A machine of every kind of scheme, memory and interconnect, of six nodes. The
 /// periods of all clocks are different and below 10 ticks. `assignment` is that of the image schemes.
 [[nodiscard]] std::vector<NamedTiming> machines_of_every_kind(
-    processors::Assignment assignment = processors::Assignment::dynamic);
+    processors::machine::Assignment assignment = processors::machine::Assignment::dynamic);
 
 /// Multiplies every duration of the machine by `factor`; false when a clock's period would not fit.
-[[nodiscard]] bool stretch(processors::MachineConfig& machine, std::int64_t factor);
+[[nodiscard]] bool stretch(processors::machine::MachineConfig& machine, std::int64_t factor);
 
 /// Whether `long_one` is `short_one` with every time multiplied by `factor`, and everything else equal.
-[[nodiscard]] bool is_stretched(const processors::MachineResult& short_one,
-                                const processors::MachineResult& long_one, std::int64_t factor);
+[[nodiscard]] bool is_stretched(const processors::replay::MachineResult& short_one,
+                                const processors::replay::MachineResult& long_one, std::int64_t factor);
 
 /// Sets all cycle counts of a machine to 0, and with them every duration that is given in cycles.
-void take_all_time_away(processors::MachineConfig& machine);
+void take_all_time_away(processors::machine::MachineConfig& machine);
 
 /// Whether both have the same hits and misses at every node.
-[[nodiscard]] bool same_references(const processors::MachineResult& a, const processors::MachineResult& b);
+[[nodiscard]] bool same_references(const processors::replay::MachineResult& a,
+                                   const processors::replay::MachineResult& b);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

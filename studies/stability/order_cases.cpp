@@ -15,7 +15,7 @@
 #include "studies/stability/hostile.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -70,11 +70,11 @@ CaseOutcome orders_of_posting() {
 CaseOutcome orders_of_starting() {
   Tally tally;
   for (const NamedTiming& one : machines_of_every_kind()) {
-    const processors::MachineResult base = processors::replay(small_log(), one.machine);
+    const processors::replay::MachineResult base = processors::replay::replay(small_log(), one.machine);
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      processors::ReplayOptions options;
+      processors::replay::ReplayOptions options;
       options.start_seed = seed;
-      tally.add(is_stretched(base, processors::replay(small_log(), one.machine, options), 1));
+      tally.add(is_stretched(base, processors::replay::replay(small_log(), one.machine, options), 1));
     }
   }
   return none_wrong(tally, "frames differ");
@@ -83,13 +83,14 @@ CaseOutcome orders_of_starting() {
 CaseOutcome step_by_step() {
   Tally tally;
   for (const NamedTiming& one : machines_of_every_kind()) {
-    if (one.machine.scheme != processors::Scheme::image) {
+    if (one.machine.scheme != processors::machine::Scheme::image) {
       continue;
     }
-    processors::MachineResult ahead = processors::replay(small_log(), one.machine);
-    processors::ReplayOptions options;
+    processors::replay::MachineResult ahead = processors::replay::replay(small_log(), one.machine);
+    processors::replay::ReplayOptions options;
     options.step_by_step = true;
-    const processors::MachineResult steps = processors::replay(small_log(), one.machine, options);
+    const processors::replay::MachineResult steps =
+        processors::replay::replay(small_log(), one.machine, options);
     ahead.events = steps.events;  // the one thing that may differ
     tally.add(is_stretched(ahead, steps, 1));
   }
@@ -140,7 +141,7 @@ CaseOutcome moments_at(std::int64_t base) {
   // Sums, here and below, because the larger of a number and NaN may be the number.
   const double error = std::abs(*all.variance() / 8.25 - 1.0) + std::abs(*all.mean() / mean - 1.0);
   CaseOutcome outcome = error_within(error, 1e-15, "relative error of mean and variance");
-  outcome.figure += fmt::format("; {} samples", grouped(static_cast<std::uint64_t>(all.count())));
+  outcome.figure += fmt::format("; {} samples", tables::grouped(static_cast<std::uint64_t>(all.count())));
   return outcome;
 }
 
@@ -220,4 +221,4 @@ void add_order_cases(std::vector<StabilityCase>& cases) {
   add("full-counters", "a counter or sum beyond 2^63 wraps", "stopped as a fault of ours", full_counters);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

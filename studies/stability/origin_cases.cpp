@@ -9,13 +9,13 @@
 #include "processors/program/shading.h"
 #include "studies/stability/geometry_oracles.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
 using accel::Hit;
 using accel::Ray;
-using Vec = processors::Vec3<double>;
+using Vec = processors::program::Vec3<double>;
 
 scenes::Scene scene_of(const PlacedSphere& mesh) {
   scenes::Scene scene;
@@ -27,13 +27,13 @@ scenes::Scene scene_of(const PlacedSphere& mesh) {
   return scene;
 }
 
-processors::Surface<double> surface_of(const scenes::Scene& scene, const Ray& eye, const Hit& hit) {
+processors::program::Surface<double> surface_of(const scenes::Scene& scene, const Ray& eye, const Hit& hit) {
   const double weights[3] = {hit.u, hit.v, hit.w};
-  return processors::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
+  return processors::program::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
 }
 
-Ray leaving(const processors::Surface<double>& surface, const Vec& direction) {
-  const Vec origin = processors::leave(surface, direction);
+Ray leaving(const processors::program::Surface<double>& surface, const Vec& direction) {
+  const Vec origin = processors::program::leave(surface, direction);
   Ray ray{{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}};
   ray.t_min = std::numeric_limits<double>::denorm_min();
   return ray;
@@ -56,9 +56,9 @@ CaseOutcome convex(double offset, double scale, const CaseSize& size) {
     if (!hit.found()) {
       continue;
     }
-    const processors::Surface<double> surface = surface_of(scene, eye, hit);
+    const processors::program::Surface<double> surface = surface_of(scene, eye, hit);
     Vec direction(random.direction());
-    const double cosine = processors::dot(surface.geometric, direction);
+    const double cosine = processors::program::dot(surface.geometric, direction);
     if (std::abs(cosine) < 0.01) {
       continue;  // grazing: whether a triangle of a rounded mesh is met is a matter of that rounding
     }
@@ -66,8 +66,8 @@ CaseOutcome convex(double offset, double scale, const CaseSize& size) {
     (cosine > 0.0 ? outwards : inwards).add(found == (cosine < 0.0));
   }
   CaseOutcome outcome = none_wrong({outwards.wrong + inwards.wrong, outwards.of + inwards.of}, "rays wrong");
-  outcome.figure +=
-      fmt::format("; {} outwards hit, {} inwards passed", grouped(outwards.wrong), grouped(inwards.wrong));
+  outcome.figure += fmt::format("; {} outwards hit, {} inwards passed", tables::grouped(outwards.wrong),
+                                tables::grouped(inwards.wrong));
   return outcome;
 }
 
@@ -122,4 +122,4 @@ void add_origin_cases(std::vector<StabilityCase>& cases) {
       "gaps from 2^8 steps of a double on are seen", [] { return thin_gap(16.5); });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -8,12 +8,12 @@
 #include "sim/error.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 /// Sums of waits exceed the frame time: up to so many requests may wait at a time, all frame long.
 constexpr sim::Ticks most_waiting = std::int64_t{1} << 20;
@@ -22,8 +22,8 @@ constexpr sim::Ticks most_waiting = std::int64_t{1} << 20;
 /// is refused as an error of the user's.
 CaseOutcome up_to_the_end(const MachineConfig& machine) {
   // Keeps all events, which are what this case tests.
-  const processors::ReplayOptions all = {.keep_lookups = true, .keep_read_events = true};
-  const MachineResult base = processors::replay(small_log(), machine, all);
+  const processors::replay::ReplayOptions all = {.keep_lookups = true, .keep_read_events = true};
+  const MachineResult base = processors::replay::replay(small_log(), machine, all);
   Tally tally;
   int largest = 0;
   std::uint64_t refused = 0;
@@ -34,8 +34,8 @@ CaseOutcome up_to_the_end(const MachineConfig& machine) {
       break;
     }
     try {
-      const MachineResult result = processors::replay(small_log(), slow, all);
-      processors::check_bounds(slow, result);
+      const MachineResult result = processors::replay::replay(small_log(), slow, all);
+      processors::replay::check_bounds(slow, result);
       (void)result.time();
       tally.add(is_stretched(base, result, factor));
       largest = k;
@@ -85,8 +85,8 @@ CaseOutcome long_durations() {
         duration.set(machine, std::int64_t{1} << bits);
         bool good = true;
         try {
-          const MachineResult result = processors::replay(small_log(), machine);
-          processors::check_bounds(machine, result);
+          const MachineResult result = processors::replay::replay(small_log(), machine);
+          processors::replay::check_bounds(machine, result);
           good = result.end >= 0;
         } catch (const sim::UserError&) {  // refused, which is as good
         } catch (const sim::InternalError& error) {
@@ -122,4 +122,4 @@ void add_overflow_cases(std::vector<StabilityCase>& cases) {
       sums_of_times);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

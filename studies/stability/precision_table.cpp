@@ -10,7 +10,7 @@
 #include "studies/stability/hostile.h"
 #include "studies/stability/stability_case.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -74,22 +74,25 @@ std::vector<PrecisionRow> compare_precisions(std::uint32_t rays, bool floats) {
   return rows;
 }
 
-Table precision_table(const std::vector<PrecisionRow>& rows) {
-  Table table(
+tables::Table precision_table(const std::vector<PrecisionRow>& rows) {
+  tables::Table table(
       "float_double", "Floats beside doubles: a teapot moved along every axis, the same rays at it",
-      {{"offset", ColumnType::real, "1", "the teapot is moved so far along every axis"},
-       {"steps", ColumnType::real, "1", "floats across the teapot's longest axis, at its place"},
-       {"triangles", ColumnType::integer, "1", "of the teapot"},
-       {"collapsed", ColumnType::integer, "1", "triangles that have no area in floats"},
-       {"rays", ColumnType::integer, "1", "traced at each place"},
-       {"hits", ColumnType::integer, "1", "of these, hit the teapot at the origin, in doubles"},
-       {"float_agrees", ColumnType::real, "fraction", "rays that hit the same in floats as in doubles"},
-       {"double_agrees", ColumnType::real, "fraction", "rays that hit the same in doubles as at the origin"},
-       {"advice", ColumnType::text, "", "what the program says of the scene"}});
+      {{"offset", tables::ColumnType::real, "1", "the teapot is moved so far along every axis"},
+       {"steps", tables::ColumnType::real, "1", "floats across the teapot's longest axis, at its place"},
+       {"triangles", tables::ColumnType::integer, "1", "of the teapot"},
+       {"collapsed", tables::ColumnType::integer, "1", "triangles that have no area in floats"},
+       {"rays", tables::ColumnType::integer, "1", "traced at each place"},
+       {"hits", tables::ColumnType::integer, "1", "of these, hit the teapot at the origin, in doubles"},
+       {"float_agrees", tables::ColumnType::real, "fraction",
+        "rays that hit the same in floats as in doubles"},
+       {"double_agrees", tables::ColumnType::real, "fraction",
+        "rays that hit the same in doubles as at the origin"},
+       {"advice", tables::ColumnType::text, "", "what the program says of the scene"}});
   for (const PrecisionRow& row : rows) {
-    table.add_row({row.offset, row.need.steps, count_cell(row.need.primitives),
-                   count_cell(row.need.collapsed), count_cell(row.rays), count_cell(row.hits),
-                   share(row.float_agree, row.rays), share(row.double_agree, row.rays),
+    table.add_row({row.offset, row.need.steps, tables::count_cell(row.need.primitives),
+                   tables::count_cell(row.need.collapsed), tables::count_cell(row.rays),
+                   tables::count_cell(row.hits), share(row.float_agree, row.rays),
+                   share(row.double_agree, row.rays),
                    std::string(row.need.wants_double() ? "doubles" : "floats would do")});
   }
   return table;
@@ -112,4 +115,4 @@ void add_precision_cases(std::vector<StabilityCase>& cases) {
       });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

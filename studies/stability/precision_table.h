@@ -7,7 +7,7 @@
 #include "accel/precision.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// The teapot moved by `offset` along every axis, and the same rays at it.
 struct PrecisionRow {
@@ -24,6 +24,6 @@ struct PrecisionRow {
 [[nodiscard]] std::vector<PrecisionRow> compare_precisions(std::uint32_t rays, bool floats = true);
 
 /// "float_double".
-[[nodiscard]] Table precision_table(const std::vector<PrecisionRow>& rows);
+[[nodiscard]] tables::Table precision_table(const std::vector<PrecisionRow>& rows);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

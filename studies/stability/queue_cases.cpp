@@ -15,12 +15,12 @@
 #include "studies/stability/hostile.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
-using processors::ClosedNetwork;
-using processors::MachineResult;
+using processors::replay::MachineResult;
+using processors::theory::ClosedNetwork;
 
 /// D/D/1//N: every wait, finish and sum in closed form.
 CaseOutcome cyclic(const std::vector<std::uint32_t>& node_counts, std::int64_t bank_cycles) {
@@ -30,7 +30,7 @@ CaseOutcome cyclic(const std::vector<std::uint32_t>& node_counts, std::int64_t b
   for (const std::uint32_t nodes : node_counts) {
     const Cyclic machine(nodes, reads, bank_cycles);
     const sim::Ticks n = nodes;
-    const MachineResult result = processors::replay(machine.log, machine.machine);
+    const MachineResult result = processors::replay::replay(machine.log, machine.machine);
     const sim::Ticks each = machine.wait_of_later_rounds();
     off += static_cast<double>(machine.off(result, reads));
     const double span = static_cast<double>(reads) * static_cast<double>(machine.think + machine.service) +
@@ -43,12 +43,12 @@ CaseOutcome cyclic(const std::vector<std::uint32_t>& node_counts, std::int64_t b
 /// Far beyond saturation the bus never rests: the frame is its busy time and the first and last computing.
 CaseOutcome saturated(std::uint32_t nodes) {
   const Cyclic machine(nodes, 4, 4, 1);
-  const MachineResult result = processors::replay(machine.log, machine.machine);
+  const MachineResult result = processors::replay::replay(machine.log, machine.machine);
   const sim::Ticks busy = sim::Ticks{nodes} * 5 * machine.service;
   const double slack = static_cast<double>(result.end - busy) /
                        static_cast<double>(machine.think + machine.after + machine.service);
   CaseOutcome outcome{fmt::format("{} nodes, {} events; {:.2f} computings beyond the bus's busy time",
-                                  grouped(nodes), grouped(result.events), slack),
+                                  tables::grouped(nodes), tables::grouped(result.events), slack),
                       slack, 1.0};
   outcome.value += slack < 0.0 ? 2.0 : 0.0;
   return outcome;
@@ -64,8 +64,8 @@ CaseOutcome repairman(std::uint64_t customers, double think_over_service) {
     busy = count / (count + a * blocking);
     blocking = a * blocking / (count + a * blocking);
   }
-  const double got = processors::repairman_utilisation(customers, think_over_service, 1.0);
-  const double mean = processors::mean_values({customers, think_over_service, {1.0}}).throughput;
+  const double got = processors::theory::repairman_utilisation(customers, think_over_service, 1.0);
+  const double mean = processors::theory::mean_values({customers, think_over_service, {1.0}}).throughput;
   // A sum, because the larger of a number and NaN may be the number.
   const double error =
       std::abs(got / static_cast<double>(busy) - 1.0) + std::abs(mean / static_cast<double>(busy) - 1.0);
@@ -78,7 +78,7 @@ CaseOutcome balanced_banks(std::uint64_t customers) {
   const ClosedNetwork network{customers, 0.0, std::vector<double>(banks, 3.0)};
   const auto n = static_cast<double>(customers);
   const double expected = n / ((n + static_cast<double>(banks) - 1.0) * 3.0);
-  const double got = processors::mean_values(network).throughput;
+  const double got = processors::theory::mean_values(network).throughput;
   return error_within(std::abs(got / expected - 1.0), 1e-12, "relative error");
 }
 
@@ -92,9 +92,9 @@ CaseOutcome bounds_hold() {
     for (std::uint32_t queue = random.below(8) + 1; queue > 0; --queue) {
       network.demands.push_back(std::pow(10.0, random.between(-9.0, 9.0)));
     }
-    const double x = processors::mean_values(network).throughput;
-    const auto wide = processors::asymptotic_bounds(network);
-    const auto narrow = processors::balanced_job_bounds(network);
+    const double x = processors::theory::mean_values(network).throughput;
+    const auto wide = processors::theory::asymptotic_bounds(network);
+    const auto narrow = processors::theory::balanced_job_bounds(network);
     const double up = 1.0 + 1e-9;
     tally.add(wide.low <= x * up && x <= wide.high * up && narrow.low <= x * up && x <= narrow.high * up);
   }
@@ -195,7 +195,8 @@ CaseOutcome littles_law(const CaseSize& size) {
     last = at;
   }
   const auto off = static_cast<double>(std::llabs(area - bank.statistics()[0].waits.sum));
-  return {fmt::format("{:g} of {} ticks off", off, grouped(static_cast<std::uint64_t>(area))), off, 0.0};
+  return {fmt::format("{:g} of {} ticks off", off, tables::grouped(static_cast<std::uint64_t>(area))), off,
+          0.0};
 }
 
 }  // namespace
@@ -239,4 +240,4 @@ void add_queue_cases(std::vector<StabilityCase>& cases) {
       "area under the queue's length, in whole ticks", littles_law);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

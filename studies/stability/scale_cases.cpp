@@ -14,19 +14,19 @@
 #include "studies/show/output.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 /// Whether the counts that do not depend on the machine are right; also checks that no time is below its
 /// bounds.
 bool whole_frame(const MachineConfig& machine, const MachineResult& result) {
-  const processors::LogTotals totals = processors::totals_of(small_log());
-  const processors::StepCounts steps = result.steps();
-  processors::check_bounds(machine, result);
+  const processors::program::LogTotals totals = processors::program::totals_of(small_log());
+  const processors::cost::StepCounts steps = result.steps();
+  processors::replay::check_bounds(machine, result);
   return steps.pixels == std::int64_t{small_log().width} * small_log().height &&
          steps.tests == static_cast<std::int64_t>(totals.tests) &&
          steps.branches == static_cast<std::int64_t>(totals.branches) &&
@@ -36,21 +36,22 @@ bool whole_frame(const MachineConfig& machine, const MachineResult& result) {
 CaseOutcome node_counts(const CaseSize& size) {
   Tally tally;
   for (const std::uint32_t nodes : {1U, 2U, 3U, 16U, 17U, 1024U, size.nodes}) {
-    for (const auto assignment : {processors::Assignment::dynamic, processors::Assignment::interleaved,
-                                  processors::Assignment::blocks}) {
+    for (const auto assignment :
+         {processors::machine::Assignment::dynamic, processors::machine::Assignment::interleaved,
+          processors::machine::Assignment::blocks}) {
       MachineConfig machine;
       machine.nodes = nodes;
-      machine.packets = {1, 1, processors::PacketOrder::morton};
+      machine.packets = {1, 1, processors::machine::PacketOrder::morton};
       machine.host.assignment = assignment;
-      const MachineResult result = processors::replay(small_log(), machine);
+      const MachineResult result = processors::replay::replay(small_log(), machine);
       sim::Ticks sum = 0;
-      for (const processors::NodeStatistics& node : result.nodes) {
-        sum += std::llabs(processors::sum_of(node.time) - result.end);
+      for (const processors::cost::NodeStatistics& node : result.nodes) {
+        sum += std::llabs(processors::cost::sum_of(node.time) - result.end);
       }
       tally.add(sum == 0 && result.nodes.size() == nodes && whole_frame(machine, result));
     }
   }
-  return none_wrong(tally, fmt::format("machines differ, up to {} nodes", grouped(size.nodes)));
+  return none_wrong(tally, fmt::format("machines differ, up to {} nodes", tables::grouped(size.nodes)));
 }
 
 /// Looks for NaN and infinities in everything that `marti run` prints.
@@ -59,14 +60,14 @@ CaseOutcome printed(const CaseSize& size) {
   const std::string text =
       "[scene]\nsource = \"tetra:1\"\n[image]\nwidth = 16\nheight = 12\n[machine]\nnodes = " +
       std::to_string(nodes) + "\n[packets]\nwidth = 4\nheight = 4\n";
-  sim::Config config = sim::Config::from_text(run_schema(), text, "more-nodes-than-packets");
-  const RunResult result = run(config);
+  sim::Config config = sim::Config::from_text(run::run_schema(), text, "more-nodes-than-packets");
+  const run::RunResult result = run::run(config);
   Tally tally;
   std::uint64_t idle = 0;
-  for (const processors::NodeStatistics& node : result.timed.nodes) {
-    idle += processors::had_work(node) ? 0U : 1U;
+  for (const processors::cost::NodeStatistics& node : result.timed.nodes) {
+    idle += processors::replay::had_work(node) ? 0U : 1U;
   }
-  for (std::string printed : {summary_of(result), json_of(result)}) {
+  for (std::string printed : {run::summary_of(result), run::json_of(result)}) {
     std::transform(printed.begin(), printed.end(), printed.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (const char* word : {" nan", "-nan", ":nan", " inf ", "-inf", ":inf", "(nan", "nan%"}) {
@@ -75,7 +76,8 @@ CaseOutcome printed(const CaseSize& size) {
   }
   CaseOutcome outcome = none_wrong(tally, "words found");
   outcome.value += idle > 0 ? 0.0 : 1.0;
-  outcome.figure += fmt::format("; {} of {} nodes had no work", grouped(idle), grouped(nodes));
+  outcome.figure +=
+      fmt::format("; {} of {} nodes had no work", tables::grouped(idle), tables::grouped(nodes));
   return outcome;
 }
 
@@ -83,12 +85,13 @@ CaseOutcome packet_shapes() {
   Tally tally;
   for (const auto& [width, height] :
        {std::pair<std::uint32_t, std::uint32_t>{1, 1}, {24, 16}, {7, 5}, {1, 16}, {24, 1}, {1000, 1000}}) {
-    for (const auto order : {processors::PacketOrder::scanline, processors::PacketOrder::morton,
-                             processors::PacketOrder::hilbert}) {
+    for (const auto order :
+         {processors::machine::PacketOrder::scanline, processors::machine::PacketOrder::morton,
+          processors::machine::PacketOrder::hilbert}) {
       MachineConfig machine;
       machine.nodes = 5;
       machine.packets = {width, height, order};
-      tally.add(whole_frame(machine, processors::replay(small_log(), machine)));
+      tally.add(whole_frame(machine, processors::replay::replay(small_log(), machine)));
     }
   }
   return none_wrong(tally, "packets differ");
@@ -100,17 +103,17 @@ CaseOutcome perfect_memory() {
   for (const std::uint32_t nodes : {1U, 3U, 64U}) {
     MachineConfig machine;
     machine.nodes = nodes;
-    machine.packets = {1, 1, processors::PacketOrder::scanline};
-    machine.host.assignment = processors::Assignment::interleaved;
+    machine.packets = {1, 1, processors::machine::PacketOrder::scanline};
+    machine.host.assignment = processors::machine::Assignment::interleaved;
     machine.interconnect.kind = memory::InterconnectKind::ideal;
     machine.interconnect.latency_cycles = 0;
-    const MachineResult result = processors::replay(small_log(), machine);
-    const processors::StepTicks ticks = processors::step_ticks(machine, small_log());
+    const MachineResult result = processors::replay::replay(small_log(), machine);
+    const processors::cost::StepTicks ticks = processors::cost::step_ticks(machine, small_log());
     sim::Ticks most = 0;
-    for (const processors::NodeStatistics& node : result.nodes) {
-      processors::TimeDivision counted{};
-      processors::add_counted_time(ticks, node.steps, node.references.all_hits(), counted);
-      most = std::max(most, processors::sum_of(counted));
+    for (const processors::cost::NodeStatistics& node : result.nodes) {
+      processors::cost::TimeDivision counted{};
+      processors::cost::add_counted_time(ticks, node.steps, node.references.all_hits(), counted);
+      most = std::max(most, processors::cost::sum_of(counted));
     }
     tally.add(result.end == most);
   }
@@ -128,7 +131,7 @@ CaseOutcome narrow_bus() {
       machine.interconnect.width = width;
       machine.interconnect.clock = sim::Clock::from_period(7);
       machine.banks.count = banks;
-      const MachineResult result = processors::replay(small_log(), machine);
+      const MachineResult result = processors::replay::replay(small_log(), machine);
       const memory::InterconnectStatistics& bus = result.clusters[0].interconnect;
       // Lines are read, and pixels of 4 bytes written.
       const auto beats = [width](std::int64_t bytes) { return (bytes + width - 1) / width; };
@@ -160,4 +163,4 @@ void add_scale_cases(std::vector<StabilityCase>& cases) {
       "busy time is beats and addresses, to the tick", narrow_bus);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

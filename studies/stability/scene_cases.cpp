@@ -8,7 +8,7 @@
 #include "scenes/procedural.h"
 #include "studies/stability/geometry_oracles.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -86,8 +86,8 @@ CaseOutcome coincident(const CaseSize& size) {
   CaseOutcome outcome = none_wrong(tally, "hits not of the lowest id");
   // Sixteen entries a triangle are more than a tree should spend on what it cannot separate.
   outcome.value += most_entries > 16 * copies ? 1.0 : 0.0;
-  outcome.figure +=
-      fmt::format("; trees of at most {} nodes, {} entries", grouped(most_nodes), grouped(most_entries));
+  outcome.figure += fmt::format("; trees of at most {} nodes, {} entries", tables::grouped(most_nodes),
+                                tables::grouped(most_entries));
   return outcome;
 }
 
@@ -135,7 +135,7 @@ CaseOutcome stadium(const CaseSize& size) {
   }
   CaseOutcome outcome = none_wrong(tally, "rays differ");
   outcome.figure += fmt::format("; {} hit the teapot; {} leaves of the octree of 12 levels over the limit",
-                                grouped(hits), grouped(overfull));
+                                tables::grouped(hits), tables::grouped(overfull));
   return outcome;
 }
 
@@ -169,4 +169,4 @@ void add_scene_cases(std::vector<StabilityCase>& cases) {
       stadium);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

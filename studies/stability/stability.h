@@ -8,15 +8,15 @@
 #include "studies/stability/stability_case.h"
 #include "studies/tables/study_files.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// Runs every case. When one fails, the output's `fault` says which. Throws UserError for anything wrong with
 /// the input.
 /// `meter` is told how far the study is; null: nobody waits.
-[[nodiscard]] StudyOutput run_stability(sim::Config& config, sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_stability(sim::Config& config, sim::WorkMeter* meter = nullptr);
 
 /// Like the function above, with other cases than stability_cases().
-[[nodiscard]] StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases,
-                                        sim::WorkMeter* meter = nullptr);
+[[nodiscard]] tables::StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> cases,
+                                                sim::WorkMeter* meter = nullptr);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -7,13 +7,13 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 CaseOutcome none_wrong(const Tally& tally, std::string_view what) {
   if (tally.of == 0) {
     return {fmt::format("no {} tried", what), 1.0, 0.0};
   }
-  return {fmt::format("{} of {} {}", grouped(tally.wrong), grouped(tally.of), what),
+  return {fmt::format("{} of {} {}", tables::grouped(tally.wrong), tables::grouped(tally.of), what),
           static_cast<double>(tally.wrong), 0.0};
 }
 
@@ -60,4 +60,4 @@ std::vector<StabilityCase> stability_cases() {
   return cases;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

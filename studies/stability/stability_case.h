@@ -12,7 +12,7 @@
 
 #include "studies/tables/text_units.h"  // grouped(), which every case uses
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 /// How large the cases are.
 struct CaseSize {
@@ -105,4 +105,4 @@ void add_cache_cases(std::vector<StabilityCase>& cases);
 void add_scale_cases(std::vector<StabilityCase>& cases);
 void add_order_cases(std::vector<StabilityCase>& cases);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

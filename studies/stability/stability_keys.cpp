@@ -7,7 +7,7 @@
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 void declare_stability_keys(sim::Schema& schema) {
   const CaseSize size;
@@ -21,7 +21,7 @@ void declare_stability_keys(sim::Schema& schema) {
 sim::Schema stability_schema() {
   sim::Schema schema;
   declare_stability_keys(schema);
-  declare_sections_of_other_commands(schema);
+  keys::declare_sections_of_other_commands(schema);
   return schema;
 }
 
@@ -47,4 +47,4 @@ StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCas
   return stability;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -8,7 +8,7 @@
 #include "sim/schema.h"
 #include "studies/stability/stability_case.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 void declare_stability_keys(sim::Schema& schema);
 
@@ -23,4 +23,4 @@ struct StabilityConfig {
 /// Throws UserError naming file, line and key.
 [[nodiscard]] StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCase> all);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -9,7 +9,7 @@
 #include "studies/stability/geometry_oracles.h"
 #include "studies/stability/kernel_check.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
@@ -62,7 +62,8 @@ CaseOutcome mailboxes(const CaseSize& size) {
     });
   }
   CaseOutcome outcome = none_wrong(tally, "rays differ");
-  outcome.figure += fmt::format("; {} tests instead of {}", grouped(with_tests), grouped(without_tests));
+  outcome.figure +=
+      fmt::format("; {} tests instead of {}", tables::grouped(with_tests), tables::grouped(without_tests));
   return outcome;
 }
 
@@ -111,4 +112,4 @@ void add_structure_cases(std::vector<StabilityCase>& cases) {
       "same hits with and without, and no more tests", mailboxes);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -9,21 +9,21 @@
 #include "processors/replay/bounds.h"
 #include "studies/stability/machines.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 namespace {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
-sim::Ticks spent(const processors::NodeStatistics& node, Activity activity) {
+sim::Ticks spent(const processors::cost::NodeStatistics& node, Activity activity) {
   return node.time[static_cast<std::size_t>(activity)];
 }
 
 /// Keeps all events, also those whose result is known beforehand: they are what these cases test.
-MachineResult replay_all(const processors::WorkLog& log, const MachineConfig& machine) {
-  return processors::replay(log, machine, {.keep_lookups = true, .keep_read_events = true});
+MachineResult replay_all(const processors::program::WorkLog& log, const MachineConfig& machine) {
+  return processors::replay::replay(log, machine, {.keep_lookups = true, .keep_read_events = true});
 }
 
 /// All durations of a machine times 1, 10, ... 1e9.
@@ -37,7 +37,7 @@ CaseOutcome homogeneous(const MachineConfig& machine) {
     tally.add(stretch(slow, factor) && is_stretched(base, replay_all(small_log(), slow), factor));
   }
   CaseOutcome outcome = none_wrong(tally, "scales differ");
-  outcome.figure += fmt::format("; {} events at each", grouped(base.events));
+  outcome.figure += fmt::format("; {} events at each", tables::grouped(base.events));
   return outcome;
 }
 
@@ -59,52 +59,52 @@ CaseOutcome stiff(std::int64_t ratio) {
   const MachineConfig machine = one_node_with(ratio);
   const MachineResult result = replay_all(small_log(), machine);
   const std::uint64_t events_at_one = replay_all(small_log(), one_node_with(1)).events;
-  const processors::NodeStatistics& node = result.nodes[0];
-  processors::TimeDivision counted{};
-  processors::add_counted_time(processors::step_ticks(machine, small_log()), node.steps,
-                               node.references.all_hits(), counted);
+  const processors::cost::NodeStatistics& node = result.nodes[0];
+  processors::cost::TimeDivision counted{};
+  processors::cost::add_counted_time(processors::cost::step_ticks(machine, small_log()), node.steps,
+                                     node.references.all_hits(), counted);
   const sim::Ticks stalled = spent(node, Activity::interconnect_wait) + spent(node, Activity::transfer) +
                              spent(node, Activity::bank_wait) + spent(node, Activity::bank_access);
-  const sim::Ticks expected = processors::sum_of(counted) + node.references.all_misses() * 5 * ratio;
-  const sim::Ticks got = processors::sum_of(node.time) - spent(node, Activity::dispatch_wait) -
+  const sim::Ticks expected = processors::cost::sum_of(counted) + node.references.all_misses() * 5 * ratio;
+  const sim::Ticks got = processors::cost::sum_of(node.time) - spent(node, Activity::dispatch_wait) -
                          spent(node, Activity::queue_full_wait) - spent(node, Activity::idle);
   const auto off = static_cast<double>(std::llabs(got - expected)) +
                    static_cast<double>(std::llabs(stalled - node.references.all_misses() * 5 * ratio)) +
                    (result.events == events_at_one ? 0.0 : 1.0);
-  return {
-      fmt::format("{:g} ps and events off; {} hits, {} misses, {} events", off,
-                  grouped(static_cast<std::uint64_t>(node.references.all_hits())),
-                  grouped(static_cast<std::uint64_t>(node.references.all_misses())), grouped(result.events)),
-      off, 0.0};
+  return {fmt::format("{:g} ps and events off; {} hits, {} misses, {} events", off,
+                      tables::grouped(static_cast<std::uint64_t>(node.references.all_hits())),
+                      tables::grouped(static_cast<std::uint64_t>(node.references.all_misses())),
+                      tables::grouped(result.events)),
+          off, 0.0};
 }
 
 /// Many nodes behind a bus a thousand million times slower than they.
 CaseOutcome stiff_and_crowded() {
   MachineConfig machine;
   machine.nodes = 64;
-  machine.packets = {1, 1, processors::PacketOrder::scanline};
+  machine.packets = {1, 1, processors::machine::PacketOrder::scanline};
   machine.clock = sim::Clock::from_period(1);
   machine.banks.count = 1;
   machine.banks.clock = sim::Clock::from_period(1'000'000'000);
   const MachineResult result = replay_all(small_log(), machine);
-  processors::check_bounds(machine, result);
+  processors::replay::check_bounds(machine, result);
   // The one bank is all that takes time: it is busy from the first access to the last.
-  const processors::FrameBounds bounds = processors::frame_bounds(machine, result);
+  const processors::replay::FrameBounds bounds = processors::replay::frame_bounds(machine, result);
   const double idle = 1.0 - static_cast<double>(bounds.bank) / static_cast<double>(result.end);
   return error_within(idle, 1e-4, "share of the frame in which the one bank was idle");
 }
 
 CaseOutcome without_time() {
   Tally tally;
-  for (const NamedTiming& one : machines_of_every_kind(processors::Assignment::interleaved)) {
+  for (const NamedTiming& one : machines_of_every_kind(processors::machine::Assignment::interleaved)) {
     MachineConfig machine = one.machine;
     const MachineResult usual = replay_all(small_log(), machine);
     take_all_time_away(machine);
     const MachineResult result = replay_all(small_log(), machine);
     // Where rays move, contexts take turns or a tree is shared, the order of events decides what a cache
     // holds; and a node that builds a branch reads more.
-    const bool own_order = machine.scheme == processors::Scheme::image && machine.contexts == 1;
-    const bool given = machine.build.sharing == processors::Sharing::given;
+    const bool own_order = machine.scheme == processors::machine::Scheme::image && machine.contexts == 1;
+    const bool given = machine.build.sharing == processors::machine::Sharing::given;
     tally.add(result.end == 0 &&
               (!given || result.references().references() == usual.references().references()) &&
               (!given || !own_order || same_references(usual, result)));
@@ -126,7 +126,8 @@ CaseOutcome without_time_dynamic() {
 CaseOutcome without_one_time() {
   Tally tally;
   const auto differs = [&](auto&& change) {
-    MachineConfig machine = machines_of_every_kind(processors::Assignment::interleaved).front().machine;
+    MachineConfig machine =
+        machines_of_every_kind(processors::machine::Assignment::interleaved).front().machine;
     const MachineResult usual = replay_all(small_log(), machine);
     change(machine);
     tally.add(same_references(usual, replay_all(small_log(), machine)));
@@ -170,4 +171,4 @@ void add_time_cases(std::vector<StabilityCase>& cases) {
       "hits and misses of any other latency", without_one_time);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::stability

@@ -13,7 +13,7 @@
 #include "studies/run/prepared_frame.h"
 #include "studies/run/scene_hash.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -23,7 +23,7 @@ constexpr std::uint64_t most_scene_bytes = std::uint64_t{100} << 20U;  // of mos
 constexpr std::size_t another_scene = 1'000'000;                       // more than a frame has settings
 constexpr std::size_t unlike_all = 2 * another_scene;
 
-double rays_of(const processors::RenderOptions& options) {
+double rays_of(const processors::program::RenderOptions& options) {
   return static_cast<double>(options.width) * options.height * options.samples;
 }
 
@@ -45,26 +45,29 @@ std::size_t unlike(const std::vector<std::uint64_t>& a, const std::vector<std::u
   return different.size();
 }
 
-SmallLog log_of(const FunctionalRun& run) { return {run.frame.log, static_cast<double>(run.totals.bytes)}; }
+SmallLog log_of(const run::FunctionalRun& run) {
+  return {run.frame.log, static_cast<double>(run.totals.bytes)};
+}
 
 // As a worker of the sweep traces the frame, but small.
-FrameSample sample_of(const FrameConfig& frame) {
-  FrameConfig config = frame;
+FrameSample sample_of(const keys::FrameConfig& frame) {
+  keys::FrameConfig config = frame;
   // As many rays as large_side has with one sample a pixel.
   config.render =
-      made_small(config.render, std::max(fewest_side, large_side / std::sqrt(config.render.samples)));
+      keys::made_small(config.render, std::max(fewest_side, large_side / std::sqrt(config.render.samples)));
   const sim::MemoryBudget of_scene(std::min(config.memory.limit(), most_scene_bytes), true);
   config.open.file.memory = of_scene;
   config.memory = sim::MemoryBudget(std::min(config.memory.limit(), most_sample_bytes), true);
   config.render.voxel_cut = 0.0;  // a coarse image would cut more than the frame
-  const double begin = process_cpu_seconds();
-  const scenes::Scene scene = open_frame(config);
+  const double begin = host::process_cpu_seconds();
+  const scenes::Scene scene = run::open_frame(config);
   of_scene.require(scenes::host_bytes(scene) + scenes::host_bytes_of_facts(scene), "the scene takes", {});
-  static_cast<void>(scene_hash(scene));
-  const PreparedFrame prepared(config, scene);
-  const double ready = process_cpu_seconds();
-  const FunctionalRun run = prepared.finish(prepared.trace());
-  FrameSample sample{log_of(run), {}, rays_of(config.render), ready - begin, process_cpu_seconds() - ready};
+  static_cast<void>(run::scene_hash(scene));
+  const run::PreparedFrame prepared(config, scene);
+  const double ready = host::process_cpu_seconds();
+  const run::FunctionalRun run = prepared.finish(prepared.trace());
+  FrameSample sample{
+      log_of(run), {}, rays_of(config.render), ready - begin, host::process_cpu_seconds() - ready};
   if (rays_of(config.render) != rays_of(frame.render)) {
     const double side = std::max(config.render.width, config.render.height);
     sample.small = log_of(prepared.part(prepared.trace_small(side / 2.0)));
@@ -129,4 +132,4 @@ std::vector<FrameEstimate> FrameSamples::estimates() const {
   return estimates;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -11,7 +11,7 @@
 #include "processors/program/work_log.h"
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The most memory that a sample may take: scene and structure, or the machine that is timed on its log. It
 /// bounds the time that a sample takes by what is sampled, not by a clock.
@@ -19,7 +19,7 @@ inline constexpr std::uint64_t most_sample_bytes = std::uint64_t{250} << 20U;
 
 /// A frame traced small.
 struct SmallLog {
-  std::shared_ptr<const processors::WorkLog> log;
+  std::shared_ptr<const processors::program::WorkLog> log;
   double bytes = 0.0;
 };
 
@@ -68,4 +68,4 @@ class FrameSamples {
   std::vector<FrameSample> samples_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -18,12 +18,12 @@
 #include "studies/sweep/work/batches.h"
 #include "studies/sweep/work/stripped_log_cache.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
-using processors::MachineConfig;
-using processors::StrippedLog;
+using processors::machine::MachineConfig;
+using processors::walk::StrippedLog;
 
 // A machine whose energy does not fit is refused when it is timed, with the line of its key.
 MachineConfig without_energy(const MachineConfig& machine) {
@@ -99,13 +99,13 @@ class Sampling {
 
   // Processor time of a machine on the log. Its stripping counts as that of a log so many times as large.
   double seconds_of(std::size_t number, const MachineConfig& plain, const SmallLog& log, double scale) {
-    processors::ReplayOptions options;
+    processors::replay::ReplayOptions options;
     const std::shared_ptr<const StrippedLog> stripped = stripped_for(number, plain, log, scale);
     options.stripped = stripped.get();
     options.keep_read_events = true;
-    const double begin = thread_cpu_seconds();
-    static_cast<void>(processors::replay(*log.log, plain, options));
-    return thread_cpu_seconds() - begin;
+    const double begin = host::thread_cpu_seconds();
+    static_cast<void>(processors::replay::replay(*log.log, plain, options));
+    return host::thread_cpu_seconds() - begin;
   }
 
   // The stripped log that the machine will have, of this log; null: none.
@@ -118,9 +118,9 @@ class Sampling {
     const std::vector<std::uint32_t>& ways = batch.ways;
     const auto [made, is_new] = stripped_.try_emplace({log.log.get(), batch.key, ways});
     if (is_new) {
-      const double begin = process_cpu_seconds();
+      const double begin = host::process_cpu_seconds();
       made->second = StrippedLog::make(*log.log, plain, ways);
-      stripped_seconds_ += (process_cpu_seconds() - begin) * scale;
+      stripped_seconds_ += (host::process_cpu_seconds() - begin) * scale;
       stripped_bytes_ += log.bytes * scale;
     }
     const auto at = std::lower_bound(ways.begin(), ways.end(), StrippedLog::ways_of(plain));
@@ -133,7 +133,7 @@ class Sampling {
   const std::function<const FrameEstimate&(std::size_t)>& frame_of_;
   std::vector<MachineBatch> batches_;
   std::vector<std::size_t> batch_of_;  // of each machine of the plan
-  std::map<std::tuple<const processors::WorkLog*, std::string, std::vector<std::uint32_t>>,
+  std::map<std::tuple<const processors::program::WorkLog*, std::string, std::vector<std::uint32_t>>,
            std::vector<std::shared_ptr<const StrippedLog>>>
       stripped_;
   // Of the machines that were timed: what does not grow with the image, and what does, at their frames' own
@@ -156,7 +156,7 @@ std::optional<MachinesEstimate> estimate_machines(
   Sampling sampling(plan, machines, samples, frame_of);
   std::vector<std::size_t> order;
   std::copy_if(machines.begin(), machines.end(), std::back_inserter(order), [&](std::size_t number) {
-    return processors::host_bytes(plan.machines[number].config) <= most_sample_bytes;
+    return processors::replay::host_bytes(plan.machines[number].config) <= most_sample_bytes;
   });
   std::mt19937_64 chance(1);
   std::shuffle(order.begin(), order.end(), chance);
@@ -166,4 +166,4 @@ std::optional<MachinesEstimate> estimate_machines(
   return sampling.estimate();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

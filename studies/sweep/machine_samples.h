@@ -9,7 +9,7 @@
 #include "studies/sweep/frame_samples.h"
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Seconds of processor time.
 struct MachinesEstimate {
@@ -27,4 +27,4 @@ struct MachinesEstimate {
     const std::function<const FrameEstimate&(std::size_t frame)>& frame_of,
     const std::function<bool()>& enough);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -22,13 +22,13 @@
 #include "studies/sweep/work/sweep_worker.h"
 #include "studies/tables/csv.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
 void refuse_large_machines(const SweepPlan& plan, const sim::MemoryBudget& memory) {
   for (const SweepMachine& machine : plan.machines) {
-    memory.require(processors::host_bytes(machine.config),
+    memory.require(processors::replay::host_bytes(machine.config),
                    "a machine of " + std::to_string(machine.config.all_nodes()) + " nodes takes",
                    "lower machine.nodes or cache.size");
   }
@@ -60,7 +60,7 @@ void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
       return;
     }
     store.close();
-    if (std::error_code ignored; !has_log_or_journal(file)) {
+    if (std::error_code ignored; !tables::has_log_or_journal(file)) {
       std::filesystem::remove(file, ignored);
     }
   } catch (const sim::UserError&) {
@@ -82,10 +82,10 @@ SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
 }
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-                      const std::optional<Prices>& prices,
+                      const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
-  const sim::MadeDirectory made = prepare_output(options.directory);
+  const sim::MadeDirectory made = show::prepare_output(options.directory);
   SweepReport report;
   report.store = options.directory / "results.sqlite";
   report.points = options.directory / "points.csv";
@@ -95,7 +95,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   const bool is_new = !is_begun(report.store);
   SweepOutlook outlook;
   {
-    const AtSignal unlocked(unlock);
+    const host::AtSignal unlocked(unlock);
     outlook = look_ahead(plan, options);  // checks a store that was begun
     announce(describe(plan, outlook));
   }
@@ -124,7 +124,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       },
       std::move(outlook.costs));
   try {
-    const AtSignal last_words([&](int signal) {
+    const host::AtSignal last_words([&](int signal) {
       const std::size_t saved = coordinator.close_for_good();
       unlock(signal);
       std::fprintf(
@@ -148,11 +148,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   }
   progress.end();
   store.close();
-  const AtSignal unlocked(unlock);
+  const host::AtSignal unlocked(unlock);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.reader = std::make_unique<const SweepReader>(report.store);
-  report.limited = limited_points(*report.reader, prices);
-  sim::write_file(report.points, csv_of(report.limited->table));
+  report.limited = limits::limited_points(*report.reader, prices);
+  sim::write_file(report.points, tables::csv_of(report.limited->table));
   return report;
 }
 
@@ -167,4 +167,4 @@ void join_sweep(Ranks& ranks, const SweepOptions& options,
                   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

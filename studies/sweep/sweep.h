@@ -13,7 +13,7 @@
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/store/sweep_reader.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 class Ranks;
 
@@ -35,9 +35,9 @@ struct SweepReport {
   std::size_t traced = 0;  ///< frames traced now
   double seconds = 0.0;    ///< of real time
   std::filesystem::path store;
-  std::filesystem::path points;               ///< the table as CSV
-  std::unique_ptr<const SweepReader> reader;  ///< of the store as the sweep has left it
-  std::optional<LimitedPoints> limited;       ///< its points with what limits them
+  std::filesystem::path points;                  ///< the table as CSV
+  std::unique_ptr<const SweepReader> reader;     ///< of the store as the sweep has left it
+  std::optional<limits::LimitedPoints> limited;  ///< its points with what limits them
 };
 
 /// Runs the part of the plan that is not in the store yet. `announce` is called with the plan as text before
@@ -45,7 +45,7 @@ struct SweepReport {
 /// Throws UserError; what is done by then is saved.
 /// `prices` rank what limits points.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-                      const std::optional<Prices>& prices,
+                      const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce);
 
 /// What a rank makes of the configuration.
@@ -58,4 +58,4 @@ struct JoinedSweep {
 void join_sweep(Ranks& ranks, const SweepOptions& options,
                 const std::function<JoinedSweep(const std::string& configuration)>& read);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

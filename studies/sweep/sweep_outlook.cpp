@@ -10,7 +10,7 @@
 #include "studies/sweep/frame_samples.h"
 #include "studies/sweep/machine_samples.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -89,7 +89,7 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
     if (machines_done[i]) {
       continue;
     }
-    bytes.push_back(processors::host_bytes(machine.config));
+    bytes.push_back(processors::replay::host_bytes(machine.config));
     left.push_back(i);
     needed[machine.frame] = true;
   }
@@ -118,4 +118,4 @@ SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines
   return outlook;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

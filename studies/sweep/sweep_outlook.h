@@ -5,7 +5,7 @@
 
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// An estimate for the machines that are not done, with so many of them timed at a time: some frames are
 /// traced small (frame_samples.h), and some machines timed on these (machine_samples.h). Samples are begun
@@ -14,4 +14,4 @@ namespace marti::studies {
 [[nodiscard]] SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines_done,
                                       const std::vector<bool>& frames_done, unsigned threads);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,7 +5,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// An integer or a real as a real; std::nullopt for a text and for a cell without value.
 [[nodiscard]] inline std::optional<double> number_of(const Cell& cell) {
@@ -39,4 +39,4 @@ namespace marti::studies {
                                                         : cell;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -6,7 +6,7 @@
 #include "sim/error.h"
 #include "studies/tables/json_table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::vector<std::pair<const ChartSpecification*, const Table*>> charts_of(std::s
   return charts;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

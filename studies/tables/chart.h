@@ -12,7 +12,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// A specification as it stands in studies/tables/charts/. Its data names the table that it shows:
 /// "data": {"name": "figure1"}.
@@ -44,4 +44,4 @@ inline constexpr std::size_t most_chart_lines = 4;
 [[nodiscard]] std::vector<std::pair<const ChartSpecification*, const Table*>> charts_of(
     std::span<const Table> tables);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

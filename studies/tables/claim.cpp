@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 std::string_view name_of(Verdict verdict) {
   switch (verdict) {
@@ -43,4 +43,4 @@ std::string text_of(std::span<const Claim> claims) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -8,7 +8,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// in_part: agrees, but not under the conditions that the paper recommends.
 enum class Verdict : std::uint8_t { agrees, in_part, differs, not_measured };
@@ -34,4 +34,4 @@ struct Claim {
 /// The claims as a list for people.
 [[nodiscard]] std::string text_of(std::span<const Claim> claims);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

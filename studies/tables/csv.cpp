@@ -9,7 +9,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/json_table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -92,4 +92,4 @@ std::string csv_of_rows(const nlohmann::ordered_json& rows) {
   return out;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -6,7 +6,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// A header of column names, then a record for each row; lines end in CR LF. A text is quoted where the RFC
 /// asks for it, and when it is empty, so that it differs from a cell without value, which is empty and bare.
@@ -17,4 +17,4 @@ namespace marti::studies {
 /// first occur; a row that lacks one, or has null there, has an empty cell.
 [[nodiscard]] std::string csv_of_rows(const nlohmann::ordered_json& rows);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

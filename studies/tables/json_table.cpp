@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::string json_of(const Table& table) {
   return json_text(whole);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

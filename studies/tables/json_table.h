@@ -6,7 +6,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Indented by one space, with a line end. Text that is not UTF-8, which can only come from names in files,
 /// has replacement characters; a number that is not finite is null.
@@ -26,4 +26,4 @@ namespace marti::studies {
 /// {"name", "title", "columns": [{"name", "unit", "description"}], "rows": ...}, as json_text().
 [[nodiscard]] std::string json_of(const Table& table);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

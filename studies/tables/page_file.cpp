@@ -9,7 +9,7 @@
 #include "studies/host/signals_held.h"
 #include "studies/tables/pending_files.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
 
@@ -52,10 +52,10 @@ void check_page_target(const fs::path& file) {
 }
 
 void write_page(const fs::path& file, std::string_view html) {
-  const SignalsHeld held;
+  const host::SignalsHeld held;
   PendingFiles pending(directory_of(file));
   pending.write(file.filename().string(), html);
   (void)pending.commit();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

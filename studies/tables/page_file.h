@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// The directory that the file is in; "." for a name alone.
 [[nodiscard]] std::filesystem::path directory_of(const std::filesystem::path& file);
@@ -17,4 +17,4 @@ void check_page_target(const std::filesystem::path& file);
 /// is as it was.
 void write_page(const std::filesystem::path& file, std::string_view html);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

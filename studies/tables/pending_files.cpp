@@ -4,7 +4,7 @@
 
 #include "sim/sha256.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 PendingFiles::PendingFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
 
@@ -33,4 +33,4 @@ std::vector<std::filesystem::path> PendingFiles::commit() {
   return names_;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

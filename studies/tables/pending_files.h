@@ -10,7 +10,7 @@
 
 #include "sim/pending_file.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Files of one directory that get their names together. To be used while a SignalsHeld lives; what is not
 /// committed is removed.
@@ -35,4 +35,4 @@ class PendingFiles {
   std::vector<std::filesystem::path> names_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -8,7 +8,7 @@
 
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -52,4 +52,4 @@ Table host_table() {
   return table;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

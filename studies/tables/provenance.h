@@ -6,7 +6,7 @@
 #include "sim/config.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// "provenance": the program's version and every setting in use, written as in a TOML file. No date and no
 /// path, so that equal runs have equal tables.
@@ -15,4 +15,4 @@ namespace marti::studies {
 /// "host": the computer that ran the study.
 [[nodiscard]] Table host_table();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
 
@@ -54,4 +54,4 @@ std::optional<PointName> point_named(const std::string& name) {
                    ordinal};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
@@ -27,4 +27,4 @@ struct PointName {
 /// "DIR:N" or "DIR/results.sqlite:N", where DIR is there; std::nullopt for another name.
 [[nodiscard]] std::optional<PointName> point_named(const std::string& name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

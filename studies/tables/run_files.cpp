@@ -5,7 +5,7 @@
 #include "sim/error.h"
 #include "sim/sha256.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
 
@@ -54,4 +54,4 @@ void remove_run_file(const fs::path& file, const std::string& hash) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

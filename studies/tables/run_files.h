@@ -9,7 +9,7 @@
 
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Every name that such a file can have. None has a directory in it.
 [[nodiscard]] std::span<const std::string_view> run_file_names();
@@ -25,4 +25,4 @@ namespace marti::studies {
 /// Removes a file of an earlier run if it is still what that run wrote. What cannot be removed stays.
 void remove_run_file(const std::filesystem::path& file, const std::string& hash);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

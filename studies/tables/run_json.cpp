@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -87,7 +87,7 @@ const Json& RunJson::at(std::string_view path) const {
   return part;
 }
 
-void RunJson::refuse(const std::string& reason) const { studies::refuse(file_, reason, made_by_); }
+void RunJson::refuse(const std::string& reason) const { studies::tables::refuse(file_, reason, made_by_); }
 
 std::optional<double> RunJson::number(std::string_view path) const {
   const Json& value = find(path);
@@ -162,4 +162,4 @@ RunJson read_run_json(const std::filesystem::path& path, std::initializer_list<c
   return run;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

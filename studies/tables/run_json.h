@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Which command has made a result: a refusal says that it has to be run again.
 enum class MadeBy : std::uint8_t { run, sweep };
@@ -61,4 +61,4 @@ class RunJson {
 [[nodiscard]] RunJson read_run_json(const std::filesystem::path& file,
                                     std::initializer_list<const char*> parts = {});
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -4,7 +4,7 @@
 
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 void write_database(const std::filesystem::path& file, std::span<const Table> tables) {
   SqliteConnection connection(file, SqliteConnection::Access::write_alone);
@@ -25,4 +25,4 @@ void write_database(const std::filesystem::path& file, std::span<const Table> ta
   });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

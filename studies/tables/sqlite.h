@@ -6,7 +6,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Writes all tables into a new database file in one transaction. Tables come in the order given, so that
 /// equal tables give equal files; NaN becomes NULL, as SQLite has none. The file must be new or empty. It is
@@ -14,4 +14,4 @@ namespace marti::studies {
 /// UserError with SQLite's reason.
 void write_database(const std::filesystem::path& file, std::span<const Table> tables);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -9,7 +9,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -206,4 +206,4 @@ std::string_view sql_type(ColumnType type) {
   throw sim::InternalError("a column of an unknown type");
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

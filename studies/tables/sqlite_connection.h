@@ -15,7 +15,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// A connection to a database file. Every failure (no permission, disk full, damaged, ...) is a UserError
 /// that names the file and gives SQLite's reason; running out of memory is std::bad_alloc.
@@ -132,4 +132,4 @@ void SqliteConnection::transact(const Change& change) {
 /// "INTEGER", "REAL" or "TEXT".
 [[nodiscard]] std::string_view sql_type(ColumnType type);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -9,12 +9,12 @@
 #include "studies/tables/pending_files.h"
 #include "studies/tables/sqlite.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
 
 std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& directory) {
-  const SignalsHeld held;
+  const host::SignalsHeld held;
   PendingFiles files(directory);
   std::vector<Table> all = output.tables;
   all.insert(all.end(), output.host_tables.begin(), output.host_tables.end());
@@ -27,8 +27,8 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
     files.write(std::string(chart->name) + ".vl.json", fill_chart(*chart, *table));
   }
   for (const StudyImage& image : output.images) {
-    write_exr(image.image, files.add(image.name + ".exr"));
-    write_png(image.image, files.add(image.name + ".png"));
+    host::write_exr(image.image, files.add(image.name + ".exr"));
+    host::write_png(image.image, files.add(image.name + ".png"));
   }
   files.write("report.txt", output.report);
   if (!output.host_report.empty()) {
@@ -39,4 +39,4 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
   return files.commit();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -8,11 +8,11 @@
 #include "processors/program/image.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 struct StudyImage {
   std::string name;  ///< of its files, without .exr and .png
-  processors::Image image;
+  processors::program::Image image;
 };
 
 struct StudyOutput {
@@ -37,4 +37,4 @@ struct StudyOutput {
 std::vector<std::filesystem::path> write_study(const StudyOutput& output,
                                                const std::filesystem::path& directory);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

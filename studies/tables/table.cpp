@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -90,4 +90,4 @@ Table describe_columns(std::span<const Table> tables) {
   return described;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// A boolean is 0 or 1 in SQLite and in a cell, false or true in JSON, CSV and texts.
 enum class ColumnType : std::uint8_t { integer, real, text, boolean };
@@ -58,4 +58,4 @@ class Table {
 /// The table "columns": table, name, unit and description of every column of `tables`.
 [[nodiscard]] Table describe_columns(std::span<const Table> tables);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -10,7 +10,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/wide_table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::string side_by_side(const Table& table, std::string_view row, std::string_v
   return text_of(titled);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

@@ -6,7 +6,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
 [[nodiscard]] std::size_t width_of(const std::string& text);
@@ -21,4 +21,4 @@ namespace marti::studies {
 [[nodiscard]] std::string side_by_side(const Table& table, std::string_view row, std::string_view across,
                                        std::string_view value, std::string_view title);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

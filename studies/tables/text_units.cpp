@@ -7,7 +7,7 @@
 
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -144,4 +144,4 @@ std::string short_text(const Cell& cell, std::string_view missing) {
   return text == nullptr ? std::string(missing) : *text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

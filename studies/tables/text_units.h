@@ -9,7 +9,7 @@
 #include "sim/time.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// "1.234 s", "1.234 ms", "1.234 us", below 1 ns "123 ps"; "0 s".
 [[nodiscard]] std::string seconds(sim::Ticks ticks);
@@ -56,4 +56,4 @@ namespace marti::studies {
 /// A cell in short: reals with six digits, `missing` for what has no value or is not finite.
 [[nodiscard]] std::string short_text(const Cell& cell, std::string_view missing);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

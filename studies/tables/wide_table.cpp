@@ -6,7 +6,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 namespace {
 
@@ -67,4 +67,4 @@ Table widen(const Table& table, std::span<const std::string_view> keys, std::str
   return wide;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

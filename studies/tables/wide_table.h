@@ -7,7 +7,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::tables {
 
 /// Rows of `table` that agree in all `keys` become one row; the values of column `spread` become columns
 /// named `prefix` and the value; the cells are those of column `value`, without value where there is none.
@@ -16,4 +16,4 @@ namespace marti::studies {
 [[nodiscard]] Table widen(const Table& table, std::span<const std::string_view> keys, std::string_view spread,
                           std::string_view prefix, std::string_view value);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::tables

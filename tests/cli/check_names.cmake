@@ -1,31 +1,49 @@
-# cmake -P check_names.cmake -- ROOT: do no two types of a folder's headers have one name? All are in the same namespace,
-# and if no file includes both headers the compiler does not notice: the linker then uses the destructor of one type
-# for the other.
+# cmake -P check_names.cmake -- ROOT: does each file stand in the namespace of its folder, in processors/ and studies/ of
+# its room, and do no two types of a namespace's headers have one name? If no file includes both headers the compiler
+# does not notice: the linker then uses the destructor of one type for the other. All faults are listed.
 cmake_minimum_required(VERSION 3.25)
 
 math(EXPR last "${CMAKE_ARGC} - 1")
 set(root "${CMAKE_ARGV${last}}")
 
+# These hold main() and what the run-time library calls.
+set(without_namespace "^studies/cli/(main|last_words)[.]cpp$")
+
 set(faults "")
 foreach(folder IN ITEMS sim scenes accel memory processors studies)
-  file(GLOB_RECURSE headers RELATIVE "${root}" "${root}/${folder}/*.h")
-  list(SORT headers)
-  foreach(header IN LISTS headers)
-    file(STRINGS "${root}/${header}" lines REGEX "^(struct|class|enum class) [A-Za-z_].*{")
+  file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${folder}/*.h" "${root}/${folder}/*.cpp")
+  list(SORT files)
+  foreach(file IN LISTS files)
+    set(namespace ${folder})
+    if(file MATCHES "^(processors|studies)/([a-z_]+)/")
+      set(namespace "${folder}::${CMAKE_MATCH_2}")
+      file(READ "${root}/${file}" text)
+      if(NOT text MATCHES "\nnamespace marti::${namespace} {" AND NOT file MATCHES "${without_namespace}")
+        string(APPEND faults "${file}: is not in the namespace marti::${namespace}\n")
+      endif()
+      if(text MATCHES "\nnamespace marti::${folder} {")
+        string(APPEND faults "${file}: opens the namespace marti::${folder}, which belongs to no room\n")
+      endif()
+    endif()
+    if(NOT file MATCHES "[.]h$")
+      continue()
+    endif()
+    file(STRINGS "${root}/${file}" lines REGEX "^(struct|class|enum class) [A-Za-z_].*{")
     foreach(line IN LISTS lines)
       if(NOT line MATCHES "^(struct|class|enum class) (alignas[(][^)]*[)] )?([A-Za-z_]+)")
         continue()  # what followed a semicolon
       endif()
-      set(name "${CMAKE_MATCH_3}")
-      if(DEFINED first_${folder}_${name})
-        string(APPEND faults "${header}: ${name} is a type of ${first_${folder}_${name}} already\n")
+      set(name "${namespace}::${CMAKE_MATCH_3}")
+      if(DEFINED "first_${name}")
+        string(APPEND faults "${file}: ${name} is a type of ${first_${name}} already\n")
       else()
-        set(first_${folder}_${name} "${header}")
+        set("first_${name}" "${file}")
       endif()
     endforeach()
   endforeach()
 endforeach()
 
 if(faults)
-  message(FATAL_ERROR "${faults}")
+  message("${faults}")
+  message(FATAL_ERROR "names in a wrong place (see above)")
 endif()

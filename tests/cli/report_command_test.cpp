@@ -60,7 +60,7 @@ bool has_chart(const json& data, const std::string& name) {
 class ReportCommand : public testing::Test {
  protected:
   void SetUp() override {
-    if (!studies::have_vega_scripts()) {
+    if (!studies::report::have_vega_scripts()) {
       GTEST_SKIP() << "built without the scripts of the report";
     }
   }
@@ -441,7 +441,7 @@ TEST_F(ReportCommand, SaysWhatPdfNeeds) {
 }
 
 TEST(ReportWithoutScripts, SaysHowToBuildWithThem) {
-  if (studies::have_vega_scripts()) {
+  if (studies::report::have_vega_scripts()) {
     GTEST_SKIP() << "built with the scripts of the report";
   }
   const TemporaryDirectory directory;

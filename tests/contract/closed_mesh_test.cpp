@@ -13,7 +13,7 @@
 namespace marti::tests {
 namespace {
 
-using studies::Icosphere;
+using studies::stability::Icosphere;
 
 /// How the sphere is moved and scaled.
 struct Place {
@@ -36,7 +36,7 @@ TEST_P(ClosedMesh, LeaksNoRay) {
   }
   std::vector<accel::TriangleCorners> all;
   for (const auto& face : sphere.faces) {
-    all.push_back(corners(vertices[face[0]], vertices[face[1]], vertices[face[2]]));
+    all.push_back(studies::stability::corners(vertices[face[0]], vertices[face[1]], vertices[face[2]]));
   }
   const auto triangles = std::make_shared<const accel::TriangleSet>(all);
   const auto octree = accel::make_structure("octree", triangles);

@@ -14,6 +14,11 @@
 #include "tests/unit/processors/naive_contexts.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 using test::pick;
@@ -117,7 +122,7 @@ TEST_P(Pairs, RunsOrIsRefusedWithTheKeysOfBoth) {
     ASSERT_TRUE(has(machine, first()) && has(machine, second()));
     if (is_refused(machine)) {
       try {
-        (void)replay(log, machine);
+        (void)replay::replay(log, machine);
         FAIL() << "not refused";
       } catch (const sim::KeyError& error) {
         for (const Feature feature : {first(), second()}) {
@@ -127,15 +132,15 @@ TEST_P(Pairs, RunsOrIsRefusedWithTheKeysOfBoth) {
       }
       continue;
     }
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     for (const ReplayOptions& options : {ReplayOptions{.step_by_step = true}, {.start_seed = seed}}) {
-      const MachineResult other = replay(log, machine, options);
+      const MachineResult other = replay::replay(log, machine, options);
       test::expect_equal(result, other);
       test::expect_equal_counts(result.counts, other.counts);
     }
     MachineConfig uncounted = machine;
     uncounted.count = {};
-    test::expect_equal(result, replay(log, uncounted));
+    test::expect_equal(result, replay::replay(log, uncounted));
     if (machine.scheme == Scheme::image && machine.build.sharing == Sharing::given) {
       expect_as_naive(log, machine, result);
     }

@@ -5,11 +5,11 @@
 
 namespace marti::tests {
 
-using studies::Aim;
-using studies::all_aims;
-using studies::corners;
-using studies::hostile_soup;
-using studies::Random;
-using studies::RayMaker;
+using studies::stability::Aim;
+using studies::stability::all_aims;
+using studies::stability::corners;
+using studies::stability::hostile_soup;
+using studies::stability::Random;
+using studies::stability::RayMaker;
 
 }  // namespace marti::tests

@@ -15,9 +15,9 @@
 namespace marti::test {
 
 struct TimedCase {
-  processors::WorkLog log;
-  processors::MachineConfig machine;
-  processors::ReplayOptions options;
+  processors::program::WorkLog log;
+  processors::machine::MachineConfig machine;
+  processors::replay::ReplayOptions options;
 };
 
 inline TimedCase image_case(Random& random) {
@@ -41,8 +41,8 @@ inline TimedCase building_case(Random& random) {
   TimedCase made{random_log_with_tree(random), random_machine(random), {}};
   add_random_build(random, made.machine);
   if (random() % 3 == 0) {
-    made.options.starts =
-        random_starts(random, made.log.topology, made.machine.build.sharing != processors::Sharing::none);
+    made.options.starts = random_starts(random, made.log.topology,
+                                        made.machine.build.sharing != processors::machine::Sharing::none);
   }
   add_random_dram(random, made.machine);
   return made;
@@ -70,24 +70,24 @@ inline TimedCase space_case(Random& random) {
   TimedCase made{any_log(random), random_machine(random), {}};
   make_random_space(random, made.machine);
   add_random_second_level(random, made.machine);
-  if (made.machine.l2.sharing == processors::SecondLevel::shared) {
-    made.machine.l2.sharing = processors::SecondLevel::none;  // there is no shared memory behind it
+  if (made.machine.l2.sharing == processors::machine::SecondLevel::shared) {
+    made.machine.l2.sharing = processors::machine::SecondLevel::none;  // there is no shared memory behind it
   }
   return made;
 }
 
 /// Adds up all that it observes, and counts contradictions to the interface.
-class Watcher final : public processors::Observer {
+class Watcher final : public processors::walk::Observer {
  public:
-  using NodeState = processors::NodeState;
-  using PixelPlace = processors::PixelPlace;
+  using NodeState = processors::walk::NodeState;
+  using PixelPlace = processors::walk::PixelPlace;
 
-  void begin(const processors::ReplayInput& input) override {
+  void begin(const processors::walk::ReplayInput& input) override {
     until.resize(input.config.all_nodes());
     states.resize(input.config.all_nodes());
     misses.resize(input.config.all_nodes());
     packet_of_.resize(input.config.all_nodes());
-    given_tree_ = input.config.build.sharing == processors::Sharing::given;
+    given_tree_ = input.config.build.sharing == processors::machine::Sharing::given;
     begun.resize(input.packets.size());
     packets_ = &input.packets;
     width_ = input.log.width;
@@ -104,7 +104,7 @@ class Watcher final : public processors::Observer {
     }
     // Only where the tree is given: what a node waits for while it builds may be another packet's.
     if (given_tree_ && !pixel.none() && state != NodeState::working && packet_of_[node]) {
-      const processors::Packet packet = (*packets_)[*packet_of_[node]];
+      const processors::machine::Packet packet = (*packets_)[*packet_of_[node]];
       faults += pixel.x < packet.x0 || pixel.x >= packet.x1 || pixel.y < packet.y0 || pixel.y >= packet.y1;
     }
   }
@@ -121,7 +121,7 @@ class Watcher final : public processors::Observer {
   void end(sim::Ticks time) override { ended = time; }
 
   std::vector<sim::Ticks> until;
-  std::vector<std::array<sim::Ticks, processors::node_states>> states;
+  std::vector<std::array<sim::Ticks, processors::walk::node_states>> states;
   std::vector<std::int64_t> misses;
   std::vector<int> begun;  // how often each packet
   std::map<std::pair<std::uint32_t, std::uint32_t>, sim::Ticks> pixel_time;
@@ -132,7 +132,7 @@ class Watcher final : public processors::Observer {
  private:
   std::vector<std::optional<std::uint64_t>> packet_of_;  // that each node is at work on
   bool given_tree_ = true;
-  const processors::PacketList* packets_ = nullptr;
+  const processors::machine::PacketList* packets_ = nullptr;
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
 };

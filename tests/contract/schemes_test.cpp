@@ -11,6 +11,14 @@
 #include "tests/support/logged_samples.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace flow;
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 using test::expect_equal;
@@ -73,7 +81,7 @@ class Schemes : public ::testing::TestWithParam<SchemeCase> {
 
 TEST_P(Schemes, TakesTheStepsOfTheLogAndItsTimesAddUp) {
   for_random_cases("steps are the log's, times add up", [](const TimedCase& c, Random& /*random*/) {
-    const MachineResult result = replay(c.log, c.machine, c.options);
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
     expect_steps(c.log, c.machine, result);
     EXPECT_GE(result.end, 0);
     if (c.machine.scheme != Scheme::image && c.log.samples > 1) {
@@ -91,7 +99,7 @@ TEST_P(Schemes, TakesTheStepsOfTheLogAndItsTimesAddUp) {
 
 TEST_P(Schemes, TouchesTheLinesThatOneNodeTouches) {
   for_random_cases("references are one node's", [](TimedCase& c, Random& /*random*/) {
-    const auto lines = lines_of(replay(c.log, c.machine, c.options));
+    const auto lines = lines_of(replay::replay(c.log, c.machine, c.options));
     if (c.machine.build.sharing != Sharing::given) {
       return;  // nodes that build read more
     }
@@ -99,7 +107,7 @@ TEST_P(Schemes, TouchesTheLinesThatOneNodeTouches) {
     c.machine.clusters = 1;
     c.machine.nodes = 1;
     c.machine.contexts = 1;
-    EXPECT_EQ(lines, lines_of(replay(c.log, c.machine)));
+    EXPECT_EQ(lines, lines_of(replay::replay(c.log, c.machine)));
   });
 }
 
@@ -108,7 +116,7 @@ TEST_P(Schemes, EveryRayEndsAndEveryContributionArrives) {
     if (c.machine.scheme == Scheme::image) {
       return;
     }
-    const MachineResult result = replay(c.log, c.machine, c.options);
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
     std::int64_t rays = 0;
     std::int64_t contributions = 0;
     std::vector<LoggedRay> tree;
@@ -139,20 +147,20 @@ TEST_P(Schemes, EveryRayEndsAndEveryContributionArrives) {
 
 TEST_P(Schemes, RunningAheadAndTheOrderOfTheFirstEventsChangeNothing) {
   for_random_cases("deterministic", [](TimedCase& c, Random& random) {
-    const MachineResult result = replay(c.log, c.machine, c.options);
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
     c.options.step_by_step = true;
-    const MachineResult stepped = replay(c.log, c.machine, c.options);
+    const MachineResult stepped = replay::replay(c.log, c.machine, c.options);
     expect_equal(result, stepped);
     EXPECT_LE(result.events, stepped.events);
     c.options.step_by_step = false;
     c.options.start_seed = random() | 1U;
-    expect_equal(result, replay(c.log, c.machine, c.options));
+    expect_equal(result, replay::replay(c.log, c.machine, c.options));
   });
 }
 
 TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
   for_random_cases("times scale", [](TimedCase& c, Random& random) {
-    const MachineResult base = replay(c.log, c.machine, c.options);
+    const MachineResult base = replay::replay(c.log, c.machine, c.options);
     const std::int64_t scale = std::array{10L, 1'000L, 1'000'003L, 1'000'000'000L}[random() % 4];
     for (sim::Clock* clock : {&c.machine.clock, &c.machine.interconnect.clock, &c.machine.banks.clock,
                               &c.machine.host.clock, &c.machine.local.clock, &c.machine.network.clock}) {
@@ -162,7 +170,7 @@ TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
     if (c.machine.banks.dram) {
       c.machine.banks.dram->period *= scale;
     }
-    const MachineResult scaled = replay(c.log, c.machine, c.options);
+    const MachineResult scaled = replay::replay(c.log, c.machine, c.options);
     EXPECT_EQ(scaled.end, base.end * scale);
     if (!late) {  // its commands are decided a tick after what they may depend on, whatever a tick is
       EXPECT_EQ(scaled.events, base.events);
@@ -197,7 +205,7 @@ TEST_P(Schemes, WithoutAnyCostsTheFrameTakesNoTime) {
     machine.network.cycles_per_beat = 0;
     machine.messages.send_cycles = 0;
     machine.messages.receive_cycles = 0;
-    const MachineResult result = replay(c.log, machine, c.options);
+    const MachineResult result = replay::replay(c.log, machine, c.options);
     expect_steps(c.log, machine, result);
     EXPECT_EQ(result.end, 0);
   });
@@ -209,7 +217,7 @@ TEST_P(Schemes, MoreNodesThanRaysAndImagesOfOnePixelOrNone) {
     c.log = test::random_ray_trees(random, size, size, 3, 2);
     c.options.starts.clear();
     c.machine.prefetch.children = c.machine.prefetch.children && c.log.traversal < accel::Traversal::grid;
-    const MachineResult result = replay(c.log, c.machine, c.options);
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
     expect_steps(c.log, c.machine, result);
     EXPECT_TRUE(size != 0 || c.machine.scheme == Scheme::image || result.end == 0);
   });
@@ -228,10 +236,10 @@ constexpr std::array<std::pair<NodeState, Activity>, 7> told_as_counted = {
 TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
   for_random_cases("observed", [](TimedCase& c, Random& /*random*/) {
     c.options.keep_read_events = true;
-    const MachineResult alone = replay(c.log, c.machine, c.options);
+    const MachineResult alone = replay::replay(c.log, c.machine, c.options);
     test::Watcher seen;
     c.options.observer = &seen;
-    const MachineResult result = replay(c.log, c.machine, c.options);
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
     expect_equal(result, alone);
     EXPECT_EQ(result.events, alone.events);
     EXPECT_EQ(seen.faults, 0);
@@ -271,7 +279,7 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
     test::Watcher stepped;
     c.options.observer = &stepped;
     c.options.step_by_step = true;
-    (void)replay(c.log, c.machine, c.options);
+    (void)replay::replay(c.log, c.machine, c.options);
     EXPECT_EQ(seen.states, stepped.states);
     EXPECT_EQ(seen.pixel_time, stepped.pixel_time);
   });

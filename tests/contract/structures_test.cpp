@@ -28,7 +28,7 @@ using accel::Hit;
 using accel::Ray;
 using accel::Structure;
 using accel::TriangleSet;
-using studies::TestCounter;
+using studies::stability::TestCounter;
 
 /// A structure and how it was made.
 struct Built {
@@ -133,7 +133,7 @@ std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corne
   RayMaker maker(*triangles, all[0].structure->bounds(), seed);
   accel::NullVisitor visitor;
   std::uint64_t hits = 0;
-  for (const Aim aim : all_aims) {
+  for (const Aim aim : studies::stability::all_aims) {
     for (std::uint32_t k = 0; k < rays; ++k) {
       const Ray ray = maker.make(aim);
       const Hit expected = oracle.closest(ray, visitor);
@@ -201,16 +201,21 @@ void PrintTo(const Soup& soup, std::ostream* out) {
 class SoupContract : public ::testing::TestWithParam<Soup> {};
 
 TEST_P(SoupContract, SameHitsAsBruteForce) {
-  EXPECT_GT(compare_with_brute_force(hostile_soup(GetParam().offset, 11, GetParam().huge), 5000, 13), 10000U);
+  EXPECT_GT(compare_with_brute_force(studies::stability::hostile_soup(GetParam().offset, 11, GetParam().huge),
+                                     5000, 13),
+            10000U);
 }
 
 TEST_P(SoupContract, SameHitsAsBruteForceWithOtherRays) {
-  EXPECT_GT(compare_with_brute_force(hostile_soup(GetParam().offset, 11, GetParam().huge), 5000, 14), 10000U);
+  EXPECT_GT(compare_with_brute_force(studies::stability::hostile_soup(GetParam().offset, 11, GetParam().huge),
+                                     5000, 14),
+            10000U);
 }
 
 // All corners exactly in planes of the tree, down to level 6.
 TEST_P(SoupContract, SameHitsWithTrianglesInCellPlanes) {
-  std::vector<accel::TriangleCorners> soup = hostile_soup(GetParam().offset, 19, GetParam().huge);
+  std::vector<accel::TriangleCorners> soup =
+      studies::stability::hostile_soup(GetParam().offset, 19, GetParam().huge);
   const auto bounds = accel::make_structure("octree", std::make_shared<const TriangleSet>(soup))->bounds();
   const TriangleSet tight(soup);
   for (auto& triangle : soup) {
@@ -235,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, SoupContract,
 
 // Scaling a scene by 2^-60 to 2^60 scales the hits, bit for bit.
 TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
-  const std::vector<accel::TriangleCorners> unit = hostile_soup(0.0, 3);
+  const std::vector<accel::TriangleCorners> unit = studies::stability::hostile_soup(0.0, 3);
   const auto unit_set = std::make_shared<const TriangleSet>(unit);
   const auto reference = accel::make_structure("octree", unit_set);
   for (const int power : {-60, -30, -1, 1, 30, 60}) {
@@ -252,7 +257,7 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
                 accel::make_structure(kind, unit_set)->topology().nodes.size());
       RayMaker maker(*unit_set, reference->bounds(), 5);
       for (int k = 0; k < 20000; ++k) {
-        Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+        Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
         const Hit expected = reference->closest(ray);
         ray.origin *= std::ldexp(1.0, power);
         ray.t_min = std::ldexp(ray.t_min, power);
@@ -273,13 +278,13 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
   Random random(23);
   switch (which) {
     case 0:
-      all.push_back(corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+      all.push_back(studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
       break;
     case 1:
-      all.push_back(corners({1, 2, 3}, {1, 2, 3}, {1, 2, 3}));
+      all.push_back(studies::stability::corners({1, 2, 3}, {1, 2, 3}, {1, 2, 3}));
       break;
     case 2:
-      all.push_back(corners({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
+      all.push_back(studies::stability::corners({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
       break;
     case 3:
     case 4:
@@ -287,28 +292,29 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
       for (int i = 0; i < 200; ++i) {  // flat, in each axis plane
         const glm::dvec3 flatten = glm::dvec3(which != 3, which != 4, which != 5);
         const glm::dvec3 a = random.in_box(glm::dvec3(-1.0), glm::dvec3(1.0));
-        all.push_back(corners(a * flatten, (a + 0.3 * random.direction()) * flatten,
-                              (a + 0.3 * random.direction()) * flatten));
+        all.push_back(studies::stability::corners(a * flatten, (a + 0.3 * random.direction()) * flatten,
+                                                  (a + 0.3 * random.direction()) * flatten));
       }
       break;
     case 6:
       for (int i = 0; i < 200; ++i) {  // near the smallest and largest sizes at once
         const double size = std::pow(10.0, random.between(-18.0, 18.0));
         const glm::dvec3 a = size * random.direction();
-        all.push_back(corners(a, a + size * random.direction(), a + size * random.direction()));
+        all.push_back(
+            studies::stability::corners(a, a + size * random.direction(), a + size * random.direction()));
       }
       break;
     case 9:
-      all.push_back(corners({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
+      all.push_back(studies::stability::corners({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
       break;
     case 8:
-      all.assign(2000, corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+      all.assign(2000, studies::stability::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
       break;
     default:
       for (int i = 0; i < 500; ++i) {  // coincident, in three orders
-        all.push_back(corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+        all.push_back(studies::stability::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
         if (i % 3 == 0) {
-          all.push_back(corners({1, 0.3, 0.2}, {0.1, 1, 1}, {-1, -1, -1}));
+          all.push_back(studies::stability::corners({1, 0.3, 0.2}, {0.1, 1, 1}, {-1, -1, -1}));
         }
       }
       break;
@@ -345,7 +351,7 @@ TEST(StructureContract, NothingToHit) {
 }
 
 TEST(StructureContract, RefusesRaysThatAreNone) {
-  const auto set = std::make_shared<const TriangleSet>(hostile_soup(0.0, 1));
+  const auto set = std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 1));
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Built& built : build_all(set)) {
@@ -360,7 +366,7 @@ TEST(StructureContract, RefusesRaysThatAreNone) {
 }
 
 TEST(StructureContract, KnowsItsKinds) {
-  const auto set = std::make_shared<const TriangleSet>(hostile_soup(0.0, 1));
+  const auto set = std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 1));
   for (const std::string_view kind : accel::structure_kinds()) {
     const auto structure = accel::make_structure(kind, set);
     EXPECT_EQ(structure->kind(), kind);

@@ -20,30 +20,30 @@ namespace marti::fuzz {
 namespace {
 
 std::vector<sim::EffectiveValue> read_run(std::string_view text) {
-  static const sim::Schema schema = studies::run_schema();
+  static const sim::Schema schema = studies::run::run_schema();
   sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
-  (void)studies::read_frame(config);
-  (void)studies::read_machine(config);
-  (void)studies::read_record(config, true);
+  (void)studies::keys::read_frame(config);
+  (void)studies::keys::read_machine(config);
+  (void)studies::keys::read_record(config, true);
   config.refuse_unused();
   return config.effective_values();
 }
 
 void read_error_study(std::string_view text) {
-  static const sim::Schema schema = studies::error_schema();
+  static const sim::Schema schema = studies::error::error_schema();
   sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
-  const studies::FrameConfig frame = studies::read_frame(config);
-  (void)studies::read_rendering_error(config, frame);
+  const studies::keys::FrameConfig frame = studies::keys::read_frame(config);
+  (void)studies::error::read_rendering_error(config, frame);
 }
 
 void read_sweep(std::string_view text) {
-  static const sim::Schema schema = studies::sweep_schema();
+  static const sim::Schema schema = studies::sweep::sweep_schema();
   const sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
-  const studies::SweepTable table = studies::read_sweep_table(config);
+  const studies::sweep::SweepTable table = studies::sweep::read_sweep_table(config);
   promise(!table.axes.empty(), "a sweep without an axis");
-  const std::uint64_t points = studies::SweepPoints(config, table).size();
-  promise(points >= 1 && points <= studies::most_sweep_points, "too many points");
-  (void)studies::read_prices(config);
+  const std::uint64_t points = studies::sweep::SweepPoints(config, table).size();
+  promise(points >= 1 && points <= studies::sweep::most_sweep_points, "too many points");
+  (void)studies::keys::read_prices(config);
 }
 
 // Calls `read`; returns whether its input was accepted.

@@ -52,26 +52,27 @@ struct Command {
 };
 
 void read_machine_of_run(Config& config) {
-  const studies::FrameConfig frame = studies::read_frame(config);
-  const processors::MachineConfig machine = studies::read_machine(config);
-  (void)studies::read_record(config, false);
+  const studies::keys::FrameConfig frame = studies::keys::read_frame(config);
+  const processors::machine::MachineConfig machine = studies::keys::read_machine(config);
+  (void)studies::keys::read_record(config, false);
   config.refuse_unused();
-  studies::refuse_beyond_memory(config, frame, machine);
+  studies::run::refuse_beyond_memory(config, frame, machine);
 }
 
 std::vector<Command> commands() {
-  return {
-      {studies::run_schema(), read_machine_of_run, "marti.toml"},
-      {studies::run_schema(), read_machine_of_run, "contexts.toml"},
-      {studies::run_schema(), read_machine_of_run, "pipeline.toml"},
-      {studies::run_schema(), read_machine_of_run, "space.toml"},
-      {studies::run_schema(), read_machine_of_run, "distributed.toml"},
-      {studies::run_schema(), [](Config& config) { (void)studies::read_frames(config); }, "animation.toml"},
-      {studies::sweep_schema(), [](Config& config) { (void)studies::plan_sweep(config); },
-       "sweep-small.toml"},
-      {studies::paper_schema(), [](Config& config) { (void)studies::read_paper(config); }, "paper.toml"},
-      {studies::schemes_schema(), [](Config& config) { (void)studies::read_schemes(config); },
-       "schemes.toml"}};
+  return {{studies::run::run_schema(), read_machine_of_run, "marti.toml"},
+          {studies::run::run_schema(), read_machine_of_run, "contexts.toml"},
+          {studies::run::run_schema(), read_machine_of_run, "pipeline.toml"},
+          {studies::run::run_schema(), read_machine_of_run, "space.toml"},
+          {studies::run::run_schema(), read_machine_of_run, "distributed.toml"},
+          {studies::run::run_schema(), [](Config& config) { (void)studies::frames::read_frames(config); },
+           "animation.toml"},
+          {studies::sweep::sweep_schema(), [](Config& config) { (void)studies::sweep::plan_sweep(config); },
+           "sweep-small.toml"},
+          {studies::paper::paper_schema(), [](Config& config) { (void)studies::paper::read_paper(config); },
+           "paper.toml"},
+          {studies::schemes::schemes_schema(),
+           [](Config& config) { (void)studies::schemes::read_schemes(config); }, "schemes.toml"}};
 }
 
 std::string read_file(const fs::path& path) {
@@ -312,7 +313,7 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
        {"interconnect.latency_cycles", "100000"},
        {"interconnect.clock", "\"1 Hz\""}},
       {{"host.clock", "\"100 Hz\""}, {"host.latency_cycles", "1000000000"}}};
-  const Schema schema = studies::run_schema();
+  const Schema schema = studies::run::run_schema();
   for (const auto& values : cases) {
     std::string text = "image.width = 8\nimage.height = 8\nmachine.nodes = 2\n";
     std::string set = text + "scene.source = \"teapot:2\"\n";
@@ -336,7 +337,7 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
                              const std::vector<std::string>& options) -> std::string {
       try {
         Config config = Config::from_text(schema, file, config_name, options);
-        (void)studies::run(config);
+        (void)studies::run::run(config);
       } catch (const sim::UserError& error) {
         return error.what();
       }
@@ -355,8 +356,8 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
 TEST_F(Refusals, OfConfigurationsThatPeopleWrite) {
   for (const test::WrongConfiguration& wrong : test::wrong_configurations()) {
     const std::string message = test::user_error_of([&] {
-      Config config = Config::from_text(studies::run_schema(), wrong.text, "wrong.toml");
-      (void)studies::run(config);
+      Config config = Config::from_text(studies::run::run_schema(), wrong.text, "wrong.toml");
+      (void)studies::run::run(config);
     });
     for (const std::string& part : wrong.complaint) {
       EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "says: " << message;

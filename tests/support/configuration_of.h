@@ -37,8 +37,8 @@ class Assignments {
   std::vector<std::string> list_;
 };
 
-inline void assign_node(const processors::MachineConfig& m, Assignments& to) {
-  to.choose("machine.scheme", processors::scheme_names, m.scheme);
+inline void assign_node(const processors::machine::MachineConfig& m, Assignments& to) {
+  to.choose("machine.scheme", processors::machine::scheme_names, m.scheme);
   to.set("machine.clusters", m.clusters);
   to.set("machine.nodes", m.nodes);
   to.set("node.clock", m.clock);
@@ -59,20 +59,20 @@ inline void assign_node(const processors::MachineConfig& m, Assignments& to) {
   to.set("costs.store", m.operations.store);
   to.set("packets.width", m.packets.width);
   to.set("packets.height", m.packets.height);
-  to.choose("packets.order", processors::packet_order_names, m.packets.order);
-  to.choose("host.assignment", processors::assignment_names, m.host.assignment);
+  to.choose("packets.order", processors::machine::packet_order_names, m.packets.order);
+  to.choose("host.assignment", processors::machine::assignment_names, m.host.assignment);
   to.set("host.clock", m.host.clock);
   to.set("host.latency_cycles", m.host.latency_cycles);
   to.set("host.occupancy_cycles", m.host.occupancy_cycles);
-  to.choose("build.sharing", processors::sharing_names, m.build.sharing);
-  to.set("build.initial_level", m.build.initial == processors::InitialTree::full ? "full"
-                                : m.build.initial == processors::InitialTree::rule
+  to.choose("build.sharing", processors::machine::sharing_names, m.build.sharing);
+  to.set("build.initial_level", m.build.initial == processors::machine::InitialTree::full ? "full"
+                                : m.build.initial == processors::machine::InitialTree::rule
                                     ? "rule"
                                     : std::to_string(m.build.level));
   to.set("build.rule_k", sim::print_real(m.build.rule_k));
 }
 
-inline void assign_caches(const processors::MachineConfig& m, Assignments& to) {
+inline void assign_caches(const processors::machine::MachineConfig& m, Assignments& to) {
   to.set("layout.node", m.layout.node_bytes);
   to.set("layout.entry", m.layout.entry_bytes);
   to.set("layout.primitive", m.layout.primitive_bytes);
@@ -86,7 +86,7 @@ inline void assign_caches(const processors::MachineConfig& m, Assignments& to) {
   if (m.layout.node_order == memory::NodeOrder::treelets) {
     to.set("layout.treelet", m.layout.treelet_bytes);
   }
-  to.choose("cache.organisation", processors::cache_organisation_names, m.cache.organisation);
+  to.choose("cache.organisation", processors::machine::cache_organisation_names, m.cache.organisation);
   to.set("cache.size", static_cast<std::int64_t>(m.cache.cache.size));
   to.set("cache.node_size", static_cast<std::int64_t>(m.cache.split_sizes[0]));
   to.set("cache.list_size", static_cast<std::int64_t>(m.cache.split_sizes[1]));
@@ -96,15 +96,15 @@ inline void assign_caches(const processors::MachineConfig& m, Assignments& to) {
   to.set("cache.ways", m.cache.cache.ways);
   to.choose("cache.replacement", memory::replacement_names, m.cache.cache.replacement);
   to.set("cache.hit_cycles", m.cache.hit_cycles);
-  to.choose("l2.sharing", processors::second_level_names, m.l2.sharing);
+  to.choose("l2.sharing", processors::machine::second_level_names, m.l2.sharing);
   to.set("l2.size", static_cast<std::int64_t>(m.l2.cache.size));
   to.set("l2.ways", m.l2.cache.ways);
   to.choose("l2.replacement", memory::replacement_names, m.l2.cache.replacement);
   to.set("l2.hit_cycles", m.l2.hit_cycles);
 }
 
-inline void assign_memory(const processors::MachineConfig& m, Assignments& to) {
-  to.choose("database.placement", processors::placement_names, m.placement);
+inline void assign_memory(const processors::machine::MachineConfig& m, Assignments& to) {
+  to.choose("database.placement", processors::machine::placement_names, m.placement);
   to.set("database.interleave", m.distribution.interleave);
   to.set("database.header", m.distribution.header_bytes);
   to.set("local.clock", m.local.clock);
@@ -147,7 +147,7 @@ inline void assign_dram(const memory::DramConfig& dram, Assignments& to) {
   to.set("dram.trefi", dram.timing.refi);
 }
 
-inline void assign_flow(const processors::MachineConfig& m, Assignments& to) {
+inline void assign_flow(const processors::machine::MachineConfig& m, Assignments& to) {
   to.choose("network.kind", memory::network_kind_names, m.network.kind);
   to.set("network.clock", m.network.clock);
   to.set("network.width", m.network.width);
@@ -162,7 +162,7 @@ inline void assign_flow(const processors::MachineConfig& m, Assignments& to) {
   to.set("pipeline.shade", m.pipeline.shade);
   to.set("pipeline.queue", m.pipeline.queue);
   to.set("pipeline.in_flight", m.pipeline.in_flight);
-  to.choose("space.policy", processors::region_policy_names, m.space.policy);
+  to.choose("space.policy", processors::machine::region_policy_names, m.space.policy);
   to.set("space.level", m.space.level);
   to.set("space.queue", m.space.queue);
   to.set("space.in_flight", m.space.in_flight);
@@ -170,9 +170,9 @@ inline void assign_flow(const processors::MachineConfig& m, Assignments& to) {
 }
 
 /// Without banks no key says how much one reference reads where there is no cache: 32 bytes.
-inline void use_default_interleave(processors::MachineConfig& machine) {
-  if (machine.scheme == processors::Scheme::space ||
-      machine.placement == processors::Placement::distributed ||
+inline void use_default_interleave(processors::machine::MachineConfig& machine) {
+  if (machine.scheme == processors::machine::Scheme::space ||
+      machine.placement == processors::machine::Placement::distributed ||
       machine.interconnect.kind == memory::InterconnectKind::ideal) {
     machine.banks.interleave = 32;
     machine.distribution.interleave = std::max(machine.distribution.interleave, machine.reference_bytes());
@@ -180,7 +180,7 @@ inline void use_default_interleave(processors::MachineConfig& machine) {
 }
 
 /// The assignments that make a configuration describe the machine. Keys without effect on it get values, too.
-inline std::vector<std::string> assignments_of(const processors::MachineConfig& machine) {
+inline std::vector<std::string> assignments_of(const processors::machine::MachineConfig& machine) {
   Assignments assignments;
   assign_node(machine, assignments);
   assign_caches(machine, assignments);
@@ -193,7 +193,7 @@ inline std::vector<std::string> assignments_of(const processors::MachineConfig& 
 }
 
 inline sim::Config configuration_of(const std::vector<std::string>& assignments) {
-  return sim::Config::from_text(studies::run_schema(), "", "random.toml", assignments);
+  return sim::Config::from_text(studies::run::run_schema(), "", "random.toml", assignments);
 }
 
 }  // namespace marti::test

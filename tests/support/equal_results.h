@@ -30,7 +30,8 @@ void expect_equal_counters(const std::vector<S>& a, const std::vector<S>& b) {
 
 /// Equal times, packets, references and steps of every node, and equal counters and waits of all that nodes
 /// share and of what they hand to each other.
-inline void expect_equal(const processors::MachineResult& a, const processors::MachineResult& b) {
+inline void expect_equal(const processors::replay::MachineResult& a,
+                         const processors::replay::MachineResult& b) {
   ASSERT_EQ(a.end, b.end);
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
   for (std::size_t n = 0; n < a.nodes.size(); ++n) {
@@ -73,8 +74,8 @@ inline void expect_equal(const processors::MachineResult& a, const processors::M
 }
 
 /// Equal counts beyond hits and misses, as far as they were asked for.
-inline void expect_equal_counts(const processors::CacheCountResult& a,
-                                const processors::CacheCountResult& b) {
+inline void expect_equal_counts(const processors::walk::CacheCountResult& a,
+                                const processors::walk::CacheCountResult& b) {
   ASSERT_EQ(a.miss_classes, b.miss_classes);
   ASSERT_EQ(a.sharing.has_value(), b.sharing.has_value());
   if (a.sharing) {
@@ -84,7 +85,7 @@ inline void expect_equal_counts(const processors::CacheCountResult& a,
   }
   ASSERT_EQ(a.attribution.has_value(), b.attribution.has_value());
   if (a.attribution) {
-    const auto place = [](const processors::AttributionRow& row) {
+    const auto place = [](const processors::walk::AttributionRow& row) {
       return std::tuple(row.bounce, row.ray, row.splitting, row.level, row.record);
     };
     ASSERT_EQ(a.attribution->size(), b.attribution->size());

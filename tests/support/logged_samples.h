@@ -11,18 +11,20 @@
 namespace marti::test {
 
 /// The word that begins a ray.
-constexpr std::uint32_t ray_word(processors::RayKind kind, std::uint32_t bounce) {
-  return processors::make_word(processors::Step::ray, processors::ray_operand(kind, bounce));
+constexpr std::uint32_t ray_word(processors::program::RayKind kind, std::uint32_t bounce) {
+  return processors::program::make_word(processors::program::Step::ray,
+                                        processors::program::ray_operand(kind, bounce));
 }
 
 /// The words of each of a pixel's samples: a log with one has them together, others begin a sample with each
 /// camera ray.
-inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const processors::WorkLog& log,
+inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const processors::program::WorkLog& log,
                                                                     std::uint32_t x, std::uint32_t y) {
   const std::span<const std::uint32_t> words = log.pixel(x, y);
   std::vector<std::size_t> begins;
-  for (std::size_t at = 0; at < words.size(); at += processors::step_words(words.data() + at)) {
-    if (at == 0 || (log.samples > 1 && words[at] == processors::make_word(processors::Step::ray, 0))) {
+  for (std::size_t at = 0; at < words.size(); at += processors::program::step_words(words.data() + at)) {
+    if (at == 0 ||
+        (log.samples > 1 && words[at] == processors::program::make_word(processors::program::Step::ray, 0))) {
       begins.push_back(at);
     }
   }
@@ -35,16 +37,17 @@ inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const proces
 }
 
 /// Tests of each accel::PrimitiveKind, one by one.
-inline std::array<std::int64_t, 3> tests_by_kind(const processors::WorkLog& log) {
-  using processors::Step;
+inline std::array<std::int64_t, 3> tests_by_kind(const processors::program::WorkLog& log) {
+  using processors::program::Step;
   std::array<std::int64_t, 3> tests{};
-  for (const processors::LogRow& row : log.rows) {
-    for (std::size_t i = 0; i < row.words.size(); i += processors::step_words(row.words.data() + i)) {
-      const Step step = processors::step_of(row.words[i]);
+  for (const processors::program::LogRow& row : log.rows) {
+    for (std::size_t i = 0; i < row.words.size();
+         i += processors::program::step_words(row.words.data() + i)) {
+      const Step step = processors::program::step_of(row.words[i]);
       if (step != Step::leaf && step != Step::partial_leaf && step != Step::mailed_leaf) {
         continue;
       }
-      const accel::TopologyNode& node = log.topology.nodes[processors::operand_of(row.words[i])];
+      const accel::TopologyNode& node = log.topology.nodes[processors::program::operand_of(row.words[i])];
       const std::uint32_t read = step == Step::leaf ? node.count : row.words[i + 1];
       for (std::uint32_t t = 0; t < read; ++t) {
         if (step != Step::mailed_leaf || ((row.words[i + 2 + t / 32] >> (t % 32)) & 1U) != 0) {

@@ -12,8 +12,8 @@ namespace marti::test {
 /// Caches of random replacement draw from a stream for each node and are not for this model.
 class NaiveCaches {
  public:
-  explicit NaiveCaches(const processors::MachineConfig& machine) {
-    using processors::CacheOrganisation;
+  explicit NaiveCaches(const processors::machine::MachineConfig& machine) {
+    using processors::machine::CacheOrganisation;
     if (machine.cache.organisation == CacheOrganisation::unified) {
       caches_.emplace_back(machine.cache.cache);
     } else if (machine.cache.organisation == CacheOrganisation::split) {
@@ -28,7 +28,7 @@ class NaiveCaches {
   [[nodiscard]] bool present() const { return !caches_.empty(); }
   /// The number of the cache that a record kind uses.
   [[nodiscard]] std::size_t number_of(memory::RecordKind kind) const {
-    return caches_.size() > 1 ? processors::split_cache_of[static_cast<std::size_t>(kind)] : 0;
+    return caches_.size() > 1 ? processors::walk::split_cache_of[static_cast<std::size_t>(kind)] : 0;
   }
   /// A reference: whether it hits. A line that is missing is brought in.
   bool refer(memory::RecordKind kind, memory::Address address) {

@@ -17,18 +17,20 @@
 
 namespace marti::test {
 
-inline MachineConfig without_counting(MachineConfig machine) {
+inline processors::machine::MachineConfig without_counting(processors::machine::MachineConfig machine) {
   machine.count = {};
   return machine;
 }
 
 class NaiveCounts {
  public:
-  explicit NaiveCounts(const MachineConfig& machine) : machine_(machine), nodes_(machine.all_nodes()) {
+  explicit NaiveCounts(const processors::machine::MachineConfig& machine)
+      : machine_(machine), nodes_(machine.all_nodes()) {
     const memory::Address line = machine.cache.cache.line;
-    for (std::size_t i = 0; i < split_caches; ++i) {
-      lines_[i] = (machine.cache.organisation == CacheOrganisation::split ? machine.cache.split_sizes[i]
-                                                                          : machine.cache.cache.size) /
+    for (std::size_t i = 0; i < processors::machine::split_caches; ++i) {
+      lines_[i] = (machine.cache.organisation == processors::machine::CacheOrganisation::split
+                       ? machine.cache.split_sizes[i]
+                       : machine.cache.cache.size) /
                   line;
     }
   }
@@ -73,7 +75,7 @@ class NaiveCounts {
   void wait(const NaiveAction& action, sim::Ticks time) { cell(action)[3] += time; }
 
   /// Fails the test unless these are the counts; waits are compared where `waits`.
-  void expect(const CacheCountResult& counts, bool waits) const {
+  void expect(const processors::walk::CacheCountResult& counts, bool waits) const {
     if (counts.miss_classes) {
       EXPECT_EQ(*counts.miss_classes, classes_);
     }
@@ -88,7 +90,7 @@ class NaiveCounts {
     }
     if (counts.attribution) {
       std::map<Key, Cell> cells;
-      for (const AttributionRow& row : *counts.attribution) {
+      for (const processors::walk::AttributionRow& row : *counts.attribution) {
         cells[{row.bounce, static_cast<std::uint32_t>(row.ray), row.level,
                static_cast<std::size_t>(row.record), row.splitting}] = {
             row.counts.references, row.counts.misses, row.counts.second_level_hits,
@@ -131,15 +133,15 @@ class NaiveCounts {
     users_[{node / machine_.nodes, line}].insert(node);
   }
   Cell& cell(const NaiveAction& action) {
-    return cells_[{processors::bounce_of(action.ray),
-                   static_cast<std::uint32_t>(processors::ray_kind_of(action.ray)), action.level,
+    return cells_[{processors::program::bounce_of(action.ray),
+                   static_cast<std::uint32_t>(processors::program::ray_kind_of(action.ray)), action.level,
                    static_cast<std::size_t>(action.kind), action.splitting}];
   }
 
-  MachineConfig machine_;
-  std::array<std::uint64_t, split_caches> lines_{};
-  std::vector<std::array<Cache, split_caches>> nodes_;
-  std::array<CacheCountResult::ByClass, memory::record_kinds> classes_{};
+  processors::machine::MachineConfig machine_;
+  std::array<std::uint64_t, processors::machine::split_caches> lines_{};
+  std::vector<std::array<Cache, processors::machine::split_caches>> nodes_;
+  std::array<processors::walk::CacheCountResult::ByClass, memory::record_kinds> classes_{};
   std::map<Key, Cell> cells_;
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::set<std::uint32_t>> users_;  // of (cluster, line)
   std::int64_t fetches_ = 0;

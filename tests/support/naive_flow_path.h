@@ -17,13 +17,14 @@ struct NaivePiece {
   sim::Ticks from = 0;
   sim::Ticks to = 0;
   std::uint32_t node = 0;
-  processors::PathKind kind = processors::PathKind::traversal;
+  processors::path::PathKind kind = processors::path::PathKind::traversal;
   friend bool operator==(const NaivePiece&, const NaivePiece&) = default;
 };
 
-inline NaivePiece naive_piece(const processors::PathPiece& piece) {
-  using processors::PathKind;
-  return {piece.from, piece.to, piece.owner.node, is_own_work(piece.kind) ? PathKind::traversal : piece.kind};
+inline NaivePiece naive_piece(const processors::path::PathPiece& piece) {
+  using processors::path::PathKind;
+  return {piece.from, piece.to, piece.owner.node,
+          processors::path::is_own_work(piece.kind) ? PathKind::traversal : piece.kind};
 }
 
 /// Adds a piece that ends where the last one begins; pieces of one kind and node become one.
@@ -52,7 +53,7 @@ class NaiveFlowPath {
     stretches_.push_back({who, by, message});
   }
   void contributed(std::uint32_t by, sim::Ticks sent, sim::Ticks arrival) {
-    contributions_.push_back({by, by, {sent, arrival, by, processors::PathKind::network}});
+    contributions_.push_back({by, by, {sent, arrival, by, processors::path::PathKind::network}});
   }
   void finished(std::uint32_t node, sim::Ticks at) { finished_.emplace_back(at, node); }
 

@@ -27,7 +27,7 @@ namespace marti::test {
 class NaivePipeline {
  public:
   struct Node {
-    processors::FlowCounts counts;
+    processors::flow::FlowCounts counts;
     sim::Ticks served = 0;  ///< steps of rays
     sim::Ticks message_wait = 0;
     sim::Ticks queue_full_wait = 0;
@@ -36,7 +36,7 @@ class NaivePipeline {
   };
 
   /// `counts`, where given, is told of every reference.
-  NaivePipeline(const processors::WorkLog& log, const processors::MachineConfig& machine,
+  NaivePipeline(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
                 NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
@@ -47,23 +47,24 @@ class NaivePipeline {
         receive_(machine.clock.cycles(machine.messages.receive_cycles)),
         host_ready_(machine.host.clock.cycles(machine.host.latency_cycles)),
         waiting_(3) {
-    limit_ = machine.pipeline.in_flight != 0 ? machine.pipeline.in_flight : most_in_flight(machine.pipeline);
-    for (const auto& [stage, count] : {std::pair{processors::Stage::search, machine.pipeline.search},
-                                       std::pair{processors::Stage::nearest, machine.pipeline.nearest},
-                                       std::pair{processors::Stage::shade, machine.pipeline.shade}}) {
+    limit_ = machine.pipeline.in_flight != 0 ? machine.pipeline.in_flight
+                                             : processors::machine::most_in_flight(machine.pipeline);
+    for (const auto& [stage, count] : {std::pair{processors::flow::Stage::search, machine.pipeline.search},
+                                       std::pair{processors::flow::Stage::nearest, machine.pipeline.nearest},
+                                       std::pair{processors::flow::Stage::shade, machine.pipeline.shade}}) {
       for (std::uint32_t i = 0; i < count; ++i) {
         states_.emplace_back(machine).stage = stage;
         nodes.emplace_back();
       }
     }
-    const processors::PacketList packets(log.width, log.height, machine.packets);
+    const processors::machine::PacketList packets(log.width, log.height, machine.packets);
     for (std::uint64_t number = 0; number < packets.size(); ++number) {
-      const processors::Packet packet = packets[number];
+      const processors::machine::Packet packet = packets[number];
       for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
         for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
           for (const auto& words : samples_of_pixel(log, x, y)) {
             auto tree = std::make_shared<Tree>();
-            processors::rays_of_sample(words, *tree);
+            processors::program::rays_of_sample(words, *tree);
             cameras_.push_back(ray_of(tree, 0));
           }
         }
@@ -79,8 +80,8 @@ class NaivePipeline {
   [[nodiscard]] const memory::NetworkStatistics& network() const { return network_->statistics(); }
 
  private:
-  using Tree = std::vector<processors::LoggedRay>;
-  using Stage = processors::Stage;
+  using Tree = std::vector<processors::program::LoggedRay>;
+  using Stage = processors::flow::Stage;
   enum Class : int { done, wake, admit };
   enum class Doing { nothing, contributing, ending, sending, blocked, granted };
 
@@ -93,10 +94,10 @@ class NaivePipeline {
     NaivePiece message{};
     bool record_read = false;
     bool lit = false;
-    [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
+    [[nodiscard]] const processors::program::LoggedRay& logged() const { return (*tree)[number]; }
   };
   struct State {
-    explicit State(const processors::MachineConfig& machine) : caches(machine) {}
+    explicit State(const processors::machine::MachineConfig& machine) : caches(machine) {}
     NaiveCaches caches;
     Stage stage = Stage::search;
     std::list<Ray> queue;
@@ -157,19 +158,20 @@ class NaivePipeline {
     const std::uint32_t* const last = ray.logged().end;
     if (stage == Stage::nearest) {
       const sim::Ticks time = step(who, ray, true);
-      ray.word += processors::step_words(ray.word);
+      ray.word += processors::program::step_words(ray.word);
       ray.record_read = false;
       return time;
     }
     sim::Ticks time = 0;
-    while (ray.word != last && processors::stage_of(ray.word) == stage) {
+    while (ray.word != last && processors::flow::stage_of(ray.word) == stage) {
       time += step(who, ray, false);
-      if (processors::visits_leaf(ray.word) && processors::entries_read(ray.word, log_.topology) > 0) {
+      if (processors::flow::visits_leaf(ray.word) &&
+          processors::flow::entries_read(ray.word, log_.topology) > 0) {
         ray.record_read = true;
         break;
       }
-      ray.lit = ray.lit || processors::step_of(*ray.word) == processors::Step::light;
-      ray.word += processors::step_words(ray.word);
+      ray.lit = ray.lit || processors::program::step_of(*ray.word) == processors::program::Step::light;
+      ray.word += processors::program::step_words(ray.word);
     }
     return time;
   }
@@ -243,7 +245,7 @@ class NaivePipeline {
     ++nodes[who].counts.ended;
     const Ray ray = *state.ray;
     std::vector<Ray> children;
-    for (std::uint32_t child = ray.logged().first_child; child != processors::LoggedRay::none;
+    for (std::uint32_t child = ray.logged().first_child; child != processors::program::LoggedRay::none;
          child = (*ray.tree)[child].next_sibling) {
       children.push_back(ray_of(ray.tree, child));
     }
@@ -326,12 +328,12 @@ class NaivePipeline {
     node.served += served;
     node.messaging += receive_;
     sim::Ticks at = now_ + receive_ + served;
-    const bool shadow = ray.logged().kind == processors::RayKind::shadow;
+    const bool shadow = ray.logged().kind == processors::program::RayKind::shadow;
     if (ray.word != ray.logged().end) {
-      send_next(who, ray.record_read ? Stage::nearest : processors::stage_of(ray.word));
+      send_next(who, ray.record_read ? Stage::nearest : processors::flow::stage_of(ray.word));
       at += send_;
     } else if (state.stage != Stage::shade &&
-               !(shadow && ray.logged().first_child == processors::LoggedRay::none)) {
+               !(shadow && ray.logged().first_child == processors::program::LoggedRay::none)) {
       send_next(who, Stage::shade);
       at += send_;
     } else if (!shadow || ray.lit) {
@@ -365,7 +367,8 @@ class NaivePipeline {
   void deliver(Ray ray, std::uint32_t who, sim::Ticks arrival, std::uint32_t sender) {
     ray.arrival = arrival;
     ray.sender = sender;
-    ray.message = {now_, arrival, sender == machine_.nodes ? who : sender, processors::PathKind::network};
+    ray.message = {now_, arrival, sender == machine_.nodes ? who : sender,
+                   processors::path::PathKind::network};
     auto at = states_[who].queue.begin();
     while (at != states_[who].queue.end() && at->arrival <= arrival) {
       ++at;
@@ -419,18 +422,18 @@ class NaivePipeline {
   void send_camera(std::uint32_t target) {
     const std::uint32_t host = machine_.nodes;
     if (!host_began_) {
-      path.worked(host, {0, host_ready_, target, processors::PathKind::dispatch});
+      path.worked(host, {0, host_ready_, target, processors::path::PathKind::dispatch});
       host_began_ = true;
     }
     host_ready_ = now_ + machine_.host.clock.cycles(machine_.host.occupancy_cycles);
-    path.worked(host, {now_, host_ready_, target, processors::PathKind::dispatch});
+    path.worked(host, {now_, host_ready_, target, processors::path::PathKind::dispatch});
     deliver(cameras_.front(), target, network_->send(now_, host, target, machine_.messages.ray_bytes).arrival,
             host);
     cameras_.pop_front();
   }
 
-  const processors::WorkLog& log_;
-  const processors::MachineConfig& machine_;
+  const processors::program::WorkLog& log_;
+  const processors::machine::MachineConfig& machine_;
   NaiveProgram program_;
   NaiveCounts* counted_;
   std::unique_ptr<memory::Network> network_;

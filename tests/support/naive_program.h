@@ -14,7 +14,9 @@
 
 namespace marti::test {
 
-using namespace processors;
+using namespace processors::cost;
+using namespace processors::machine;
+using namespace processors::program;
 
 struct NaiveAction {
   enum class What { compute, refer, children, write } what = What::compute;

@@ -29,12 +29,12 @@ class NaiveSpace {
  public:
   /// Caches of random replacement draw from a stream for each node and are not for this model.
   /// `counts`, where given, is told of every reference.
-  NaiveSpace(const processors::WorkLog& log, const processors::MachineConfig& machine,
+  NaiveSpace(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
              NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
         program_(log, machine),
-        plan_(processors::plan_space(log, machine, program_.layout())),
+        plan_(processors::flow::plan_space(log, machine, program_.layout())),
         packets_(log.width, log.height, machine.packets),
         counted_(counts),
         nodes_(machine.all_nodes()),
@@ -50,7 +50,7 @@ class NaiveSpace {
 
   NaiveFlowPath path;
 
-  processors::MachineResult run() {
+  processors::replay::MachineResult run() {
     for (std::uint32_t c = 0; c < machine_.clusters; ++c) {
       post(clusters_[c].ready_at, admit_class, c, {});
     }
@@ -83,17 +83,18 @@ class NaiveSpace {
   enum : int { arrive_class, done_class, look_class, admit_class };
 
   struct Ray {
-    std::shared_ptr<std::vector<processors::LoggedRay>> tree;
+    std::shared_ptr<std::vector<processors::program::LoggedRay>> tree;
     std::uint32_t number = 0;
     const std::uint32_t* word = nullptr;
     std::uint32_t sender = 0;  // or who has freed a slot for it
     NaivePiece message{};
-    [[nodiscard]] const processors::LoggedRay& logged() const { return (*tree)[number]; }
+    [[nodiscard]] const processors::program::LoggedRay& logged() const { return (*tree)[number]; }
     [[nodiscard]] bool over() const { return word == logged().end; }
     [[nodiscard]] bool contributes() const {
-      bool lit = logged().kind != processors::RayKind::shadow;
-      for (const std::uint32_t* w = logged().begin; w != logged().end; w += processors::step_words(w)) {
-        lit = lit || processors::step_of(*w) == processors::Step::light;
+      bool lit = logged().kind != processors::program::RayKind::shadow;
+      for (const std::uint32_t* w = logged().begin; w != logged().end;
+           w += processors::program::step_words(w)) {
+        lit = lit || processors::program::step_of(*w) == processors::program::Step::light;
       }
       return lit;
     }
@@ -118,8 +119,8 @@ class NaiveSpace {
     std::int64_t set_aside = 0;
     sim::Ticks free_at = 0;
     std::optional<NaiveCaches> caches;
-    processors::NodeStatistics statistics;
-    processors::FlowCounts counts;
+    processors::cost::NodeStatistics statistics;
+    processors::flow::FlowCounts counts;
   };
   struct Cluster {
     std::unique_ptr<memory::Network> network;
@@ -137,14 +138,14 @@ class NaiveSpace {
   std::uint32_t host_of(std::uint32_t node) const { return machine_.all_nodes() + node / machine_.nodes; }
 
   std::optional<std::uint32_t> owner(const std::uint32_t* word) const {
-    using processors::Step;
-    const Step step = processors::step_of(*word);
+    using processors::program::Step;
+    const Step step = processors::program::step_of(*word);
     if (step != Step::branch && step != Step::leaf && step != Step::partial_leaf &&
         step != Step::mailed_leaf && step != Step::cut) {
       return std::nullopt;
     }
-    const std::uint32_t region = plan_.regions.region_of[processors::operand_of(*word)];
-    if (region == processors::RegionMap::top) {
+    const std::uint32_t region = plan_.regions.region_of[processors::program::operand_of(*word)];
+    if (region == processors::flow::RegionMap::top) {
       return std::nullopt;
     }
     return plan_.node_of_region[region];
@@ -154,7 +155,7 @@ class NaiveSpace {
 
   bool draw(Cluster& cluster) {
     while (cluster.samples.empty() && next_packet_ < packets_.size()) {
-      const processors::Packet packet = packets_[next_packet_++];
+      const processors::machine::Packet packet = packets_[next_packet_++];
       for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
         for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
           for (const auto& words : samples_of_pixel(log_, x, y)) {
@@ -168,7 +169,7 @@ class NaiveSpace {
 
   void admit(std::uint32_t number, sim::Ticks now) {
     Cluster& cluster = clusters_[number];
-    while (cluster.in_flight < processors::admission_limit(machine_) && draw(cluster)) {
+    while (cluster.in_flight < processors::replay::admission_limit(machine_) && draw(cluster)) {
       if (cluster.ready_at > now) {
         post(cluster.ready_at, admit_class, number, {});
         return;
@@ -180,20 +181,20 @@ class NaiveSpace {
       cluster.ready_at = now + occupancy;
       host_busy_ += occupancy;
       const auto ray = std::make_shared<Ray>();
-      ray->tree = std::make_shared<std::vector<processors::LoggedRay>>();
-      processors::rays_of_sample(words, *ray->tree);
+      ray->tree = std::make_shared<std::vector<processors::program::LoggedRay>>();
+      processors::program::rays_of_sample(words, *ray->tree);
       ray->word = ray->logged().begin;
       std::optional<std::uint32_t> to;
       for (const std::uint32_t* w = ray->word; w != ray->logged().end && !to;
-           w += processors::step_words(w)) {
+           w += processors::program::step_words(w)) {
         to = owner(w);
       }
       enter(cluster);
       const std::uint32_t target = number * machine_.nodes + to.value_or(sent_ % machine_.nodes);
       if (!std::exchange(cluster.began, true)) {
-        path.worked(host_of(target), {0, was_ready, target, processors::PathKind::dispatch});
+        path.worked(host_of(target), {0, was_ready, target, processors::path::PathKind::dispatch});
       }
-      path.worked(host_of(target), {now, cluster.ready_at, target, processors::PathKind::dispatch});
+      path.worked(host_of(target), {now, cluster.ready_at, target, processors::path::PathKind::dispatch});
       offer(std::nullopt, target, ray, now);
       ++sent_;
     }
@@ -234,7 +235,7 @@ class NaiveSpace {
       nodes_[*from].counts.bytes_sent += bytes;
     }
     const sim::Ticks arrival = cluster_of(to).network->send(now, port, to - base(to), bytes).arrival;
-    ray->message = {now, arrival, from.value_or(to), processors::PathKind::network};
+    ray->message = {now, arrival, from.value_or(to), processors::path::PathKind::network};
     post(arrival, arrive_class, to, ray);
   }
 
@@ -242,7 +243,7 @@ class NaiveSpace {
 
   void look(std::uint32_t number, sim::Ticks now) {
     Node& node = nodes_[number];
-    time_of(node, processors::Activity::message_wait) += now - node.free_at;
+    time_of(node, processors::cost::Activity::message_wait) += now - node.free_at;
     node.free_at = now;
     sim::Ticks time = now;
     if (!node.made.empty()) {
@@ -257,7 +258,7 @@ class NaiveSpace {
       ++node.counts.taken;
       node.idle = false;
       const sim::Ticks receive = machine_.clock.cycles(machine_.messages.receive_cycles);
-      time_of(node, processors::Activity::messaging) += receive;
+      time_of(node, processors::cost::Activity::messaging) += receive;
       time += receive;
       if (!node.waiting.empty()) {
         const Waiting waited = node.waiting.front();
@@ -277,11 +278,11 @@ class NaiveSpace {
     const std::uint32_t port = number - base(number);
     while (!ray.over() && owner(ray.word).value_or(port) == port) {
       time += take_step(node, ray, ray.word);
-      ray.word += processors::step_words(ray.word);
+      ray.word += processors::program::step_words(ray.word);
     }
     if (!ray.over() || ray.contributes()) {
       const sim::Ticks send = machine_.clock.cycles(machine_.messages.send_cycles);
-      time_of(node, processors::Activity::messaging) += send;
+      time_of(node, processors::cost::Activity::messaging) += send;
       time += send;
     }
     post(time, done_class, number, {});
@@ -310,14 +311,14 @@ class NaiveSpace {
       }
       --cluster.in_flight;
       std::vector<RayPointer> children;
-      for (std::uint32_t child = ray->logged().first_child; child != processors::LoggedRay::none;
+      for (std::uint32_t child = ray->logged().first_child; child != processors::program::LoggedRay::none;
            child = (*ray->tree)[child].next_sibling) {
         children.push_back(std::make_shared<Ray>(Ray{ray->tree, child, (*ray->tree)[child].begin}));
         enter(cluster);
         ++node.counts.made;
       }
       node.made.insert(node.made.end(), children.rbegin(), children.rend());
-      if (cluster.in_flight < processors::admission_limit(machine_)) {
+      if (cluster.in_flight < processors::replay::admission_limit(machine_)) {
         path.let_go(host_of(number), number, now);
       }
       post(now, admit_class, number / machine_.nodes, {});
@@ -325,7 +326,7 @@ class NaiveSpace {
     look(number, now);
   }
 
-  static sim::Ticks& time_of(Node& node, processors::Activity activity) {
+  static sim::Ticks& time_of(Node& node, processors::cost::Activity activity) {
     return node.statistics.time[static_cast<std::size_t>(activity)];
   }
 
@@ -336,8 +337,8 @@ class NaiveSpace {
     const std::uint64_t beats = (bytes + machine_.local.width - 1) / machine_.local.width;
     const sim::Ticks transfer =
         machine_.local.clock.cycles(machine_.local.cycles_per_beat) * static_cast<sim::Ticks>(beats);
-    time_of(node, processors::Activity::bank_access) += access;
-    time_of(node, processors::Activity::transfer) += transfer;
+    time_of(node, processors::cost::Activity::bank_access) += access;
+    time_of(node, processors::cost::Activity::transfer) += transfer;
     return access + transfer;
   }
 
@@ -346,7 +347,7 @@ class NaiveSpace {
     if (node.caches->refer(action.kind, action.address)) {
       ++node.statistics.references.hits[k];
       count(node, action, true);
-      time_of(node, processors::Activity::cache_access) += program_.ticks().hit;
+      time_of(node, processors::cost::Activity::cache_access) += program_.ticks().hit;
       return program_.ticks().hit;
     }
     ++node.statistics.references.misses[k];
@@ -378,14 +379,14 @@ class NaiveSpace {
     return time;
   }
 
-  processors::MachineResult result() {
-    processors::MachineResult result;
+  processors::replay::MachineResult result() {
+    processors::replay::MachineResult result;
     result.end = last_arrival_;
     for (const Node& node : nodes_) {
       result.end = std::max(result.end, node.statistics.finish);
     }
     for (Node& node : nodes_) {
-      time_of(node, processors::Activity::idle) = result.end - node.statistics.finish;
+      time_of(node, processors::cost::Activity::idle) = result.end - node.statistics.finish;
       result.nodes.push_back(node.statistics);
       result.flow.nodes.push_back(node.counts);
       result.flow.collected += node.counts.contributions;
@@ -401,11 +402,11 @@ class NaiveSpace {
     return result;
   }
 
-  const processors::WorkLog& log_;
-  const processors::MachineConfig& machine_;
+  const processors::program::WorkLog& log_;
+  const processors::machine::MachineConfig& machine_;
   NaiveProgram program_;
-  processors::SpacePlan plan_;
-  processors::PacketList packets_;
+  processors::flow::SpacePlan plan_;
+  processors::machine::PacketList packets_;
   NaiveCounts* counted_;
   std::vector<Node> nodes_;
   std::vector<Cluster> clusters_;

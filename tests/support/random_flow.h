@@ -9,7 +9,7 @@
 namespace marti::test {
 
 /// Random sizes and costs of messages and a random network.
-inline void add_random_messages(Random& random, processors::MachineConfig& machine) {
+inline void add_random_messages(Random& random, processors::machine::MachineConfig& machine) {
   machine.messages.ray_bytes = static_cast<std::uint32_t>(pick(random, 1, 80));
   machine.messages.contribution_bytes = static_cast<std::uint32_t>(pick(random, 1, 20));
   machine.messages.send_cycles = pick(random, 0, 4);
@@ -23,31 +23,33 @@ inline void add_random_messages(Random& random, processors::MachineConfig& machi
 }
 
 /// A pipeline of at most a few nodes, small queues and any admissible number of rays in flight.
-inline void make_random_pipeline(Random& random, processors::MachineConfig& machine) {
+inline void make_random_pipeline(Random& random, processors::machine::MachineConfig& machine) {
   add_random_messages(random, machine);
-  machine.scheme = processors::Scheme::pipeline;
-  if (machine.placement == processors::Placement::distributed) {
-    machine.placement = processors::Placement::shared;
+  machine.scheme = processors::machine::Scheme::pipeline;
+  if (machine.placement == processors::machine::Placement::distributed) {
+    machine.placement = processors::machine::Placement::shared;
   }
-  processors::PipelineConfig& pipeline = machine.pipeline;
+  processors::machine::PipelineConfig& pipeline = machine.pipeline;
   pipeline.search = static_cast<std::uint32_t>(pick(random, 1, 3));
   pipeline.nearest = static_cast<std::uint32_t>(pick(random, 1, 3));
   pipeline.shade = static_cast<std::uint32_t>(pick(random, 1, 3));
   machine.nodes = pipeline.search + pipeline.nearest + pipeline.shade;
   pipeline.queue = static_cast<std::uint32_t>(pick(random, 1, 3));
   pipeline.in_flight =
-      pick(random, 0, 2) == 0 ? 0 : static_cast<std::uint32_t>(pick(random, 1, most_in_flight(pipeline)));
+      pick(random, 0, 2) == 0
+          ? 0
+          : static_cast<std::uint32_t>(pick(random, 1, processors::machine::most_in_flight(pipeline)));
 }
 
 /// A random division of space, small queues and any number of rays in flight.
-inline void make_random_space(Random& random, processors::MachineConfig& machine) {
+inline void make_random_space(Random& random, processors::machine::MachineConfig& machine) {
   add_random_messages(random, machine);
-  machine.scheme = processors::Scheme::space;
-  if (machine.placement == processors::Placement::distributed) {
-    machine.placement = processors::Placement::shared;  // of no effect
+  machine.scheme = processors::machine::Scheme::space;
+  if (machine.placement == processors::machine::Placement::distributed) {
+    machine.placement = processors::machine::Placement::shared;  // of no effect
   }
-  processors::SpaceConfig& space = machine.space;
-  space.policy = static_cast<processors::RegionPolicy>(pick(random, 0, 3));
+  processors::machine::SpaceConfig& space = machine.space;
+  space.policy = static_cast<processors::machine::RegionPolicy>(pick(random, 0, 3));
   space.level = static_cast<std::uint32_t>(pick(random, 1, 6));
   space.queue = static_cast<std::uint32_t>(pick(random, 0, 1) == 0 ? 1 : pick(random, 1, 9));
   space.in_flight = static_cast<std::uint32_t>(std::array{0, 1, 2, 30}[random() % 4]);
@@ -56,15 +58,15 @@ inline void make_random_space(Random& random, processors::MachineConfig& machine
 
 /// A log whose pixels have `samples` trees of up to `most_rays` rays, up to `deepest` bounces deep, each with
 /// a short walk; a ray at a hit point has several children.
-inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width, std::uint32_t height,
-                                            std::int64_t most_rays, std::int64_t deepest,
-                                            std::uint32_t samples = 1) {
-  using processors::make_word;
-  using processors::RayKind;
-  using processors::Step;
-  processors::WorkLog log = random_tree_log(random, width, height);
+inline processors::program::WorkLog random_ray_trees(Random& random, std::uint32_t width,
+                                                     std::uint32_t height, std::int64_t most_rays,
+                                                     std::int64_t deepest, std::uint32_t samples = 1) {
+  using processors::program::make_word;
+  using processors::program::RayKind;
+  using processors::program::Step;
+  processors::program::WorkLog log = random_tree_log(random, width, height);
   log.samples = samples;
-  for (processors::LogRow& row : log.rows) {
+  for (processors::program::LogRow& row : log.rows) {
     row = {};
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
@@ -72,8 +74,8 @@ inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width,
         std::int64_t bounce = 0;
         for (std::int64_t rays = pick(random, 1, most_rays); rays > 0; --rays) {
           const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 4));
-          row.words.push_back(
-              make_word(Step::ray, processors::ray_operand(kind, static_cast<std::uint32_t>(bounce))));
+          row.words.push_back(make_word(
+              Step::ray, processors::program::ray_operand(kind, static_cast<std::uint32_t>(bounce))));
           append_walk(random, log.topology, log.mailboxes, 0, row.words);
           if (kind != RayKind::shadow) {
             row.words.push_back(make_word(Step::shade, 0));
@@ -90,7 +92,7 @@ inline processors::WorkLog random_ray_trees(Random& random, std::uint32_t width,
 }
 
 /// A log whose rays walk down a tree that a machine can build.
-inline processors::WorkLog random_log_with_tree(Random& random) {
+inline processors::program::WorkLog random_log_with_tree(Random& random) {
   const auto width = static_cast<std::uint32_t>(pick(random, 1, 8));
   const auto height = static_cast<std::uint32_t>(pick(random, 1, 8));
   switch (pick(random, 0, 2)) {
@@ -104,7 +106,7 @@ inline processors::WorkLog random_log_with_tree(Random& random) {
 }
 
 /// Any log that a machine can time.
-inline processors::WorkLog any_log(Random& random) {
+inline processors::program::WorkLog any_log(Random& random) {
   return pick(random, 0, 3) == 0 ? random_log(random, static_cast<std::uint32_t>(pick(random, 1, 12)),
                                               static_cast<std::uint32_t>(pick(random, 1, 12)))
                                  : random_log_with_tree(random);

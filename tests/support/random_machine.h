@@ -49,11 +49,11 @@ inline accel::Topology random_topology(Random& random, std::uint32_t branches, s
 }
 
 /// A log whose words are random but valid.
-inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::uint32_t height,
-                                      std::uint32_t most_words_a_pixel = 40) {
-  using processors::make_word;
-  using processors::Step;
-  processors::WorkLog log;
+inline processors::program::WorkLog random_log(Random& random, std::uint32_t width, std::uint32_t height,
+                                               std::uint32_t most_words_a_pixel = 40) {
+  using processors::program::make_word;
+  using processors::program::Step;
+  processors::program::WorkLog log;
   log.width = width;
   log.height = height;
   log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
@@ -74,7 +74,7 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
     (log.topology.nodes[node].leaf ? leaves : branches).push_back(node);
   }
   log.rows.resize(height);
-  for (processors::LogRow& row : log.rows) {
+  for (processors::program::LogRow& row : log.rows) {
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
       row.words.push_back(make_word(Step::ray, 0));
@@ -106,8 +106,9 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
             }
             break;
           case 7:
-            row.words.push_back(make_word(
-                Step::ray, processors::ray_operand(static_cast<processors::RayKind>(pick(random, 0, 4)), 1)));
+            row.words.push_back(
+                make_word(Step::ray, processors::program::ray_operand(
+                                         static_cast<processors::program::RayKind>(pick(random, 0, 4)), 1)));
             break;
           case 8:
             row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 2))));
@@ -137,7 +138,7 @@ inline processors::WorkLog random_log(Random& random, std::uint32_t width, std::
 }
 
 /// A log of an image of up to `most` pixels on each side.
-inline processors::WorkLog small_log(Random& random, std::int64_t most = 12) {
+inline processors::program::WorkLog small_log(Random& random, std::int64_t most = 12) {
   const auto width = static_cast<std::uint32_t>(pick(random, 1, most));
   return random_log(random, width, static_cast<std::uint32_t>(pick(random, 1, most)));
 }
@@ -167,8 +168,8 @@ inline void add_random_work(Random& random, accel::Topology& topology) {
 /// of which not all entries are tested.
 inline void append_walk(Random& random, const accel::Topology& topology, bool mailboxes, std::uint32_t number,
                         sim::ChunkVector<std::uint32_t>& words) {
-  using processors::make_word;
-  using processors::Step;
+  using processors::program::make_word;
+  using processors::program::Step;
   const accel::TopologyNode& node = topology.nodes[number];
   if (random() % 8 == 0) {
     if (random() % 2 == 0 && (!node.leaf || node.count > 0)) {
@@ -196,10 +197,11 @@ inline void append_walk(Random& random, const accel::Topology& topology, bool ma
 }
 
 /// A log whose rays walk down from the root, with the work of splitting: a machine can build its tree.
-inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, std::uint32_t height) {
-  using processors::make_word;
-  using processors::Step;
-  processors::WorkLog log;
+inline processors::program::WorkLog random_tree_log(Random& random, std::uint32_t width,
+                                                    std::uint32_t height) {
+  using processors::program::make_word;
+  using processors::program::Step;
+  processors::program::WorkLog log;
   do {  // a bounding volume hierarchy is not built by machines
     log.traversal = static_cast<accel::Traversal>(pick(random, 0, accel::traversals - 1));
   } while (accel::walks_bvh(log.traversal));
@@ -217,12 +219,13 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
   log.topology = random_topology(random, static_cast<std::uint32_t>(pick(random, 0, 14)), log.primitives, 6);
   add_random_work(random, log.topology);
   log.rows.resize(height);
-  for (processors::LogRow& row : log.rows) {
+  for (processors::program::LogRow& row : log.rows) {
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
       for (std::int64_t rays = pick(random, 0, 3); rays > 0; --rays) {
-        row.words.push_back(make_word(
-            Step::ray, processors::ray_operand(static_cast<processors::RayKind>(pick(random, 0, 4)), 0)));
+        row.words.push_back(
+            make_word(Step::ray, processors::program::ray_operand(
+                                     static_cast<processors::program::RayKind>(pick(random, 0, 4)), 0)));
         append_walk(random, log.topology, log.mailboxes, 0, row.words);
         if (random() % 2 == 0) {
           row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 1))));
@@ -235,19 +238,20 @@ inline processors::WorkLog random_tree_log(Random& random, std::uint32_t width, 
 }
 
 /// Any way to build the tree; never a given tree.
-inline processors::BuildConfig random_build(Random& random) {
-  processors::BuildConfig build;
-  build.sharing = static_cast<processors::Sharing>(pick(random, 1, 3));
-  build.initial = static_cast<processors::InitialTree>(pick(random, 0, 2));
+inline processors::machine::BuildConfig random_build(Random& random) {
+  processors::machine::BuildConfig build;
+  build.sharing = static_cast<processors::machine::Sharing>(pick(random, 1, 3));
+  build.initial = static_cast<processors::machine::InitialTree>(pick(random, 0, 2));
   build.level = static_cast<std::uint32_t>(pick(random, 1, 5));
   build.rule_k = static_cast<double>(pick(random, 0, 40)) / 4.0;
   return build;
 }
 
 /// Start states that fit the tree, with branches kept from before among them.
-inline std::vector<processors::BranchStart> random_starts(Random& random, const accel::Topology& topology,
-                                                          bool may_be_lazy) {
-  using processors::BranchStart;
+inline std::vector<processors::walk::BranchStart> random_starts(Random& random,
+                                                                const accel::Topology& topology,
+                                                                bool may_be_lazy) {
+  using processors::walk::BranchStart;
   std::vector<BranchStart> starts(topology.nodes.size(), BranchStart::kept);
   std::vector<bool> below_lazy(topology.nodes.size());
   for (std::size_t number = 0; number < starts.size(); ++number) {
@@ -272,19 +276,19 @@ inline void make_possible(memory::CacheConfig& cache) {
 }
 
 /// Any second level that the machine can have.
-inline void add_random_second_level(Random& random, processors::MachineConfig& machine) {
-  using processors::SecondLevel;
+inline void add_random_second_level(Random& random, processors::machine::MachineConfig& machine) {
+  using processors::machine::SecondLevel;
   machine.l2.sharing = static_cast<SecondLevel>(pick(random, 0, 2));
   machine.l2.hit_cycles = pick(random, 0, 3);
   memory::CacheConfig& cache = machine.l2.cache;
-  const bool none = machine.cache.organisation == processors::CacheOrganisation::none;
+  const bool none = machine.cache.organisation == processors::machine::CacheOrganisation::none;
   cache.line = none ? machine.banks.interleave : machine.cache.cache.line;
   cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
   cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 4, 6, 8, 32}[random() % 7]);
   cache.size =
       std::uint64_t{cache.line} * std::max(1U, cache.ways) * static_cast<std::uint64_t>(pick(random, 1, 12));
   make_possible(cache);
-  const bool shared_reads = machine.placement == processors::Placement::shared &&
+  const bool shared_reads = machine.placement == processors::machine::Placement::shared &&
                             machine.interconnect.kind != memory::InterconnectKind::ideal;
   if ((machine.l2.sharing == SecondLevel::private_caches && none) ||
       (machine.l2.sharing == SecondLevel::shared && !shared_reads)) {
@@ -293,8 +297,8 @@ inline void add_random_second_level(Random& random, processors::MachineConfig& m
 }
 
 /// Any machine the configuration allows, with at most `most_nodes` nodes.
-inline processors::MachineConfig random_machine(Random& random, std::uint32_t most_nodes = 12) {
-  processors::MachineConfig machine;
+inline processors::machine::MachineConfig random_machine(Random& random, std::uint32_t most_nodes = 12) {
+  processors::machine::MachineConfig machine;
   machine.clusters = static_cast<std::uint32_t>(pick(random, 1, 3));
   machine.nodes =
       static_cast<std::uint32_t>(pick(random, 1, std::max<std::int64_t>(1, most_nodes / machine.clusters)));
@@ -308,7 +312,7 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 2));
   machine.layout.treelet_bytes = static_cast<std::uint32_t>(pick(random, 1, 400));
   machine.layout.record_alignment = 1U << pick(random, 0, 6);
-  machine.cache.organisation = static_cast<processors::CacheOrganisation>(pick(random, 0, 2));
+  machine.cache.organisation = static_cast<processors::machine::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
   machine.cache.cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
@@ -325,7 +329,7 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
       size = std::bit_floor(size);
     }
   }
-  machine.placement = static_cast<processors::Placement>(pick(random, 0, 3) == 0 ? 1 : 0);
+  machine.placement = static_cast<processors::machine::Placement>(pick(random, 0, 3) == 0 ? 1 : 0);
   machine.local.access_cycles = pick(random, 0, 5);
   machine.local.clock = sim::Clock::from_period(pick(random, 1, 40));
   machine.interconnect.kind = static_cast<memory::InterconnectKind>(pick(random, 0, 2));
@@ -342,16 +346,16 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
   machine.banks.busy_cycles = pick(random, 0, 9);
   machine.packets.width = static_cast<std::uint32_t>(pick(random, 1, 5));
   machine.packets.height = static_cast<std::uint32_t>(pick(random, 1, 5));
-  machine.packets.order = static_cast<processors::PacketOrder>(pick(random, 0, 2));
-  machine.host.assignment = static_cast<processors::Assignment>(pick(random, 0, 2));
+  machine.packets.order = static_cast<processors::machine::PacketOrder>(pick(random, 0, 2));
+  machine.host.assignment = static_cast<processors::machine::Assignment>(pick(random, 0, 2));
   machine.host.clock = sim::Clock::from_period(pick(random, 1, 40));
   machine.host.latency_cycles = pick(random, 0, 20);
   machine.host.occupancy_cycles = pick(random, 0, 5);
   machine.interconnect.arbitration = static_cast<memory::Arbitration>(pick(random, 0, 2));
-  if (machine.placement == processors::Placement::shared && pick(random, 0, 3) == 0) {
-    machine.placement = processors::Placement::distributed;
+  if (machine.placement == processors::machine::Placement::shared && pick(random, 0, 3) == 0) {
+    machine.placement = processors::machine::Placement::distributed;
   }
-  const std::uint32_t unit = machine.cache.organisation == processors::CacheOrganisation::none
+  const std::uint32_t unit = machine.cache.organisation == processors::machine::CacheOrganisation::none
                                  ? machine.banks.interleave
                                  : machine.cache.cache.line;
   machine.distribution.interleave = unit << pick(random, 0, 4);
@@ -365,8 +369,9 @@ inline processors::MachineConfig random_machine(Random& random, std::uint32_t mo
 }
 
 /// Now and then a memory of DRAM, of any kind that the machine can have. Call it last.
-inline void add_random_dram(Random& random, processors::MachineConfig& machine) {
-  if (machine.placement != processors::Placement::shared || machine.scheme == processors::Scheme::space ||
+inline void add_random_dram(Random& random, processors::machine::MachineConfig& machine) {
+  if (machine.placement != processors::machine::Placement::shared ||
+      machine.scheme == processors::machine::Scheme::space ||
       machine.interconnect.kind == memory::InterconnectKind::ideal || pick(random, 0, 2) > 0) {
     return;
   }
@@ -383,19 +388,19 @@ inline void add_random_dram(Random& random, processors::MachineConfig& machine) 
   dram.timing.refi = pick(random, 0, 1) == 0 ? 0 : dram.timing.refi;
   const bool held = machine.interconnect.kind == memory::InterconnectKind::bus &&
                     machine.interconnect.mode == memory::BusMode::held;
-  if (!held && machine.build.sharing != processors::Sharing::shared) {
+  if (!held && machine.build.sharing != processors::machine::Sharing::shared) {
     dram.policy = static_cast<memory::DramPolicy>(pick(random, 0, 1));
   }
   machine.banks.dram = dram;
 }
 
 /// Any contexts and prefetching that the machine can have; `tree`: the log's walk is that of a tree.
-inline void add_random_contexts(Random& random, bool tree, processors::MachineConfig& machine) {
+inline void add_random_contexts(Random& random, bool tree, processors::machine::MachineConfig& machine) {
   add_random_second_level(random, machine);
   machine.contexts = static_cast<std::uint32_t>(pick(random, 1, 5));
   machine.switch_cycles = pick(random, 0, 6);
-  if (machine.placement != processors::Placement::replicated &&
-      machine.cache.organisation != processors::CacheOrganisation::none) {
+  if (machine.placement != processors::machine::Placement::replicated &&
+      machine.cache.organisation != processors::machine::CacheOrganisation::none) {
     machine.prefetch.next_line = random() % 2 == 0;
     machine.prefetch.children = tree && random() % 2 == 0;
     machine.prefetch.outstanding = static_cast<std::uint32_t>(pick(random, 1, 4));
@@ -403,16 +408,16 @@ inline void add_random_contexts(Random& random, bool tree, processors::MachineCo
 }
 
 /// A tree that is built while others read it takes one memory that serves in the order of asking.
-inline void share_in_order(processors::MachineConfig& machine) {
-  machine.placement = processors::Placement::shared;
+inline void share_in_order(processors::machine::MachineConfig& machine) {
+  machine.placement = processors::machine::Placement::shared;
   machine.interconnect.arbitration = memory::Arbitration::fifo;
 }
 
 /// Any way to build the tree on the machine, with records so close now and then that those of all kinds share
 /// lines with nodes that are still to be built.
-inline void add_random_build(Random& random, processors::MachineConfig& machine) {
+inline void add_random_build(Random& random, processors::machine::MachineConfig& machine) {
   machine.build = random_build(random);
-  if (machine.build.sharing == processors::Sharing::shared) {
+  if (machine.build.sharing == processors::machine::Sharing::shared) {
     share_in_order(machine);
   }
   add_random_second_level(random, machine);

@@ -23,25 +23,25 @@ class TimedSweep {
   /// `config` is of studies::sweep_schema(). Throws UserError for a sweep of several frames.
   explicit TimedSweep(sim::Config config)
       : config_(std::move(config)),
-        prices_(studies::read_given_prices(config_)),
-        plan_(studies::plan_sweep(config_)) {
+        prices_(studies::keys::read_given_prices(config_)),
+        plan_(studies::sweep::plan_sweep(config_)) {
     if (plan_.frames.size() != 1) {
       throw sim::UserError("the sweep must have one frame");
     }
-    run_ = studies::run_functional(plan_.frames[0].config);
-    for (const studies::SweepMachine& machine : plan_.machines) {
-      processors::ReplayOptions options;
+    run_ = studies::run::run_functional(plan_.frames[0].config);
+    for (const studies::sweep::SweepMachine& machine : plan_.machines) {
+      processors::replay::ReplayOptions options;
       options.stripped = stripped(machine.config).get();
-      results_.push_back(processors::replay(*run_.frame.log, machine.config, options));
+      results_.push_back(processors::replay::replay(*run_.frame.log, machine.config, options));
     }
   }
 
   [[nodiscard]] std::size_t points() const { return plan_.points.size(); }
-  [[nodiscard]] const std::optional<studies::Prices>& prices() const { return prices_; }
-  [[nodiscard]] const processors::MachineConfig& machine(std::size_t point) const {
+  [[nodiscard]] const std::optional<studies::keys::Prices>& prices() const { return prices_; }
+  [[nodiscard]] const processors::machine::MachineConfig& machine(std::size_t point) const {
     return plan_.machines[plan_.points[point].machine].config;
   }
-  [[nodiscard]] const processors::MachineResult& result(std::size_t point) const {
+  [[nodiscard]] const processors::replay::MachineResult& result(std::size_t point) const {
     return results_[plan_.points[point].machine];
   }
 
@@ -60,20 +60,22 @@ class TimedSweep {
   [[nodiscard]] sim::Config stored_config(std::size_t point) const {
     std::vector<std::string> assignments;
     for (const sim::EffectiveValue& value :
-         studies::all_of(plan_.machines[plan_.points[point].machine].settings)) {
+         studies::sweep::all_of(plan_.machines[plan_.points[point].machine].settings)) {
       assignments.push_back(value.key + "=" + value.value);
     }
     return sim::Config::from_text(config_.schema(), "", "store", assignments);
   }
 
-  [[nodiscard]] studies::SweepLimits limits(std::optional<studies::Prices> prices = std::nullopt) const {
-    std::vector<studies::LimitPoint> timed;
+  [[nodiscard]] studies::limits::SweepLimits limits(
+      std::optional<studies::keys::Prices> prices = std::nullopt) const {
+    std::vector<studies::limits::LimitPoint> timed;
     for (std::size_t i = 0; i < points(); ++i) {
-      timed.push_back({config(i), studies::point_figures(studies::counts_of(machine(i), result(i)))});
+      timed.push_back(
+          {config(i), studies::limits::point_figures(studies::figures::counts_of(machine(i), result(i)))});
       const std::size_t base = plan_.points[i].base;
       if (plan_.machines[base].config.all_nodes() == 1) {
-        timed.back().one_node =
-            studies::point_figures(studies::counts_of(plan_.machines[base].config, results_[base]));
+        timed.back().one_node = studies::limits::point_figures(
+            studies::figures::counts_of(plan_.machines[base].config, results_[base]));
       }
     }
     std::vector<std::string> keys;
@@ -86,17 +88,18 @@ class TimedSweep {
   }
 
   /// Every step, replayed. With prices also those that cannot be among the three that save most.
-  [[nodiscard]] studies::WhatHelps measure(std::size_t point, const std::optional<studies::Prices>& prices) {
-    return studies::what_helps(
+  [[nodiscard]] studies::helps::WhatHelps measure(std::size_t point,
+                                                  const std::optional<studies::keys::Prices>& prices) {
+    return studies::helps::what_helps(
         config(point), prices, machine(point), result(point),
         {*run_.frame.log, stripped(machine(point)), {}, plan_.frames[0].config.memory});
   }
 
  private:
-  using Stripped = std::shared_ptr<const processors::StrippedLog>;
+  using Stripped = std::shared_ptr<const processors::walk::StrippedLog>;
 
-  [[nodiscard]] const Stripped& stripped(const processors::MachineConfig& machine) {
-    using processors::StrippedLog;
+  [[nodiscard]] const Stripped& stripped(const processors::machine::MachineConfig& machine) {
+    using processors::walk::StrippedLog;
     const std::string key = StrippedLog::key_of(machine);
     Stripped& log = stripped_[{key, StrippedLog::ways_of(machine)}];
     if (log == nullptr && !key.empty()) {
@@ -106,11 +109,11 @@ class TimedSweep {
   }
 
   sim::Config config_;
-  std::optional<studies::Prices> prices_;
-  studies::SweepPlan plan_;
-  studies::FunctionalRun run_;
+  std::optional<studies::keys::Prices> prices_;
+  studies::sweep::SweepPlan plan_;
+  studies::run::FunctionalRun run_;
   std::map<std::pair<std::string, std::uint32_t>, Stripped> stripped_;
-  std::vector<processors::MachineResult> results_;
+  std::vector<processors::replay::MachineResult> results_;
 };
 
 }  // namespace marti::test

@@ -22,13 +22,14 @@ class ToldCaches {
   static constexpr bool counted = true;
 
   /// From address `own` on, each node has memory of its own.
-  ToldCaches(const MachineConfig& machine, std::optional<memory::Address> own, NaiveCounts& counts)
-      : caches_(std::make_unique<processors::AnyCaches>(machine)),
+  ToldCaches(const processors::machine::MachineConfig& machine, std::optional<memory::Address> own,
+             NaiveCounts& counts)
+      : caches_(std::make_unique<processors::walk::AnyCaches>(machine)),
         line_(machine.cache.cache.line),
         own_(own),
         counts_(counts) {}
 
-  static NaiveAction action_of(memory::RecordKind kind, processors::Origin origin) {
+  static NaiveAction action_of(memory::RecordKind kind, processors::walk::Origin origin) {
     NaiveAction action;
     action.kind = kind;
     action.ray = origin.ray;
@@ -40,14 +41,14 @@ class ToldCaches {
   class View {
    public:
     View(ToldCaches& all, std::uint32_t node) : all_(all), node_(node), tags_(all.caches_->view(node)) {}
-    bool access(memory::RecordKind kind, std::uint32_t line, processors::Origin origin = {},
+    bool access(memory::RecordKind kind, std::uint32_t line, processors::walk::Origin origin = {},
                 bool /*own*/ = false) const {
       const bool hit = tags_.access(kind, line);
       all_.counts_.refer(node_, cache_of(kind), action_of(kind, origin), line, hit,
                          all_.own_ && memory::Address{line} * all_.line_ >= *all_.own_);
       return hit;
     }
-    bool touch(memory::RecordKind kind, std::uint32_t line, processors::Origin origin) const {
+    bool touch(memory::RecordKind kind, std::uint32_t line, processors::walk::Origin origin) const {
       return tags_.holds(kind, line) && access(kind, line, origin);
     }
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
@@ -66,25 +67,26 @@ class ToldCaches {
    private:
     ToldCaches& all_;
     std::uint32_t node_;
-    processors::AnyCaches::View tags_;
+    processors::walk::AnyCaches::View tags_;
   };
   [[nodiscard]] View view(std::uint32_t node) { return {*this, node}; }
 
   struct Counting {
     NaiveCounts& counts;
-    void second_level_hit(memory::RecordKind kind, processors::Origin origin) const {
+    void second_level_hit(memory::RecordKind kind, processors::walk::Origin origin) const {
       counts.second_level_hit(action_of(kind, origin));
     }
-    void wait(memory::RecordKind kind, processors::Origin origin, const memory::Service& service) const {
+    void wait(memory::RecordKind kind, processors::walk::Origin origin,
+              const memory::Service& service) const {
       counts.wait(action_of(kind, origin),
                   service.wait_interconnect + service.transfer + service.wait_bank + service.bank);
     }
-    static CacheCountResult result() { return {}; }
+    static processors::walk::CacheCountResult result() { return {}; }
   };
   [[nodiscard]] Counting counting() const { return {counts_}; }
 
  private:
-  std::unique_ptr<processors::AnyCaches> caches_;
+  std::unique_ptr<processors::walk::AnyCaches> caches_;
   memory::Address line_;
   std::optional<memory::Address> own_;
   NaiveCounts& counts_;
@@ -92,8 +94,12 @@ class ToldCaches {
 
 /// Times a machine with caches whose nodes build the tree, with an event for every reference, and tells
 /// `counts`.
-inline void tell_of_building(const WorkLog& log, const MachineConfig& machine, NaiveCounts& counts) {
-  using namespace processors;
+inline void tell_of_building(const processors::program::WorkLog& log,
+                             const processors::machine::MachineConfig& machine, NaiveCounts& counts) {
+  using namespace processors::machine;
+  using namespace processors::node;
+  using namespace processors::replay;
+  using namespace processors::walk;
   std::optional<TreePlan> plan(std::in_place, log.topology, branch_starts(log.topology, machine.build),
                                machine);
   const memory::Layout layout = layout_of(log, machine, plan);

@@ -16,19 +16,22 @@ struct TracedLine {
 };
 
 /// The references of node `node` of a machine whose packets are dealt out interleaved, in order.
-inline std::vector<TracedLine> trace_node(const WorkLog& log, const MachineConfig& machine,
+inline std::vector<TracedLine> trace_node(const processors::program::WorkLog& log,
+                                          const processors::machine::MachineConfig& machine,
                                           std::uint32_t node) {
   const NaiveProgram program(log, machine);
-  const PacketList packets(log.width, log.height, machine.packets);
+  const processors::machine::PacketList packets(log.width, log.height, machine.packets);
   std::vector<TracedLine> trace;
   for (std::uint64_t packet = node; packet < packets.size(); packet += machine.all_nodes()) {
-    const Packet place = packets[packet];
+    const processors::machine::Packet place = packets[packet];
     for (std::uint32_t y = place.y0; y < place.y1; ++y) {
       for (std::uint32_t x = place.x0; x < place.x1; ++x) {
         const auto words = log.pixel(x, y);
         std::uint32_t ray = 0;
-        for (std::size_t at = 0; at < words.size(); at += step_words(&words[at])) {
-          ray = step_of(words[at]) == Step::ray ? operand_of(words[at]) : ray;
+        for (std::size_t at = 0; at < words.size(); at += processors::program::step_words(&words[at])) {
+          ray = processors::program::step_of(words[at]) == processors::program::Step::ray
+                    ? processors::program::operand_of(words[at])
+                    : ray;
           for (const NaiveAction& action : program.actions_of(&words[at], ray)) {
             if (action.what == NaiveAction::What::refer) {
               const auto line = static_cast<std::uint32_t>(action.address / machine.cache.cache.line);

@@ -11,7 +11,7 @@ namespace marti::test {
 
 class LogChecker {
  public:
-  explicit LogChecker(const processors::WorkLog& log) : log_(log) {}
+  explicit LogChecker(const processors::program::WorkLog& log) : log_(log) {}
 
   /// What is wrong with the log; empty: nothing.
   std::string fault() {
@@ -26,7 +26,7 @@ class LogChecker {
       refuse_if(log_.texture_begin[i - 1] > log_.texture_begin[i], "texture offsets decrease");
     }
     check_tree();
-    for (const processors::LogRow& row : log_.rows) {
+    for (const processors::program::LogRow& row : log_.rows) {
       if (fault_.empty()) {
         check_row(row);
       }
@@ -35,7 +35,7 @@ class LogChecker {
   }
 
  private:
-  using Step = processors::Step;
+  using Step = processors::program::Step;
 
   void refuse_if(bool wrong, const char* what) {
     if (wrong && fault_.empty()) {
@@ -62,7 +62,7 @@ class LogChecker {
     }
   }
 
-  void check_row(const processors::LogRow& row) {
+  void check_row(const processors::program::LogRow& row) {
     if (row.begin.size() != std::size_t{log_.width} + 1) {
       fault_ = "a row lacks pixel offsets";
       return;
@@ -79,25 +79,25 @@ class LogChecker {
   }
 
   void check_pixel(std::span<const std::uint32_t> words) {
-    refuse_if(log_.samples != 1 && !words.empty() && words[0] != processors::camera_ray,
+    refuse_if(log_.samples != 1 && !words.empty() && words[0] != processors::program::camera_ray,
               "a pixel of several samples begins without a camera ray");
     std::uint32_t samples = 0;
     auto before = Step::ray;
     for (std::size_t at = 0; at < words.size() && fault_.empty();) {
-      const Step step = processors::step_of(words[at]);
-      const std::uint32_t operand = processors::operand_of(words[at]);
+      const Step step = processors::program::step_of(words[at]);
+      const std::uint32_t operand = processors::program::operand_of(words[at]);
       const bool cut_short = (step == Step::mailed_leaf && words.size() - at < 2) ||
-                             processors::step_words(&words[at]) > words.size() - at;
+                             processors::program::step_words(&words[at]) > words.size() - at;
       refuse_if(cut_short, "a pixel ends between the words of a step");
       refuse_if((before == Step::cut) != (step == Step::shade && averaged(operand)),
                 "a cut without its averaged material, or the reverse");
-      refuse_if(before == Step::pass && (!processors::visits_node(step) || step == Step::cut),
+      refuse_if(before == Step::pass && (!processors::program::visits_node(step) || step == Step::cut),
                 "a pass without its node");
       if (fault_.empty()) {
         check_step(step, operand, &words[at]);
-        samples += words[at] == processors::camera_ray ? 1 : 0;
+        samples += words[at] == processors::program::camera_ray ? 1 : 0;
         before = step;
-        at += processors::step_words(&words[at]);
+        at += processors::program::step_words(&words[at]);
       }
     }
     refuse_if(before == Step::cut || before == Step::pass, "a pixel ends in the middle of a voxel");
@@ -110,7 +110,7 @@ class LogChecker {
   }
 
   void check_step(Step step, std::uint32_t operand, const std::uint32_t* word) {
-    if (processors::visits_node(step)) {
+    if (processors::program::visits_node(step)) {
       refuse_if(operand >= log_.topology.nodes.size(), "a node that the tree does not have");
       if (fault_.empty()) {
         check_visit(step, log_.topology.nodes[operand], word);
@@ -138,15 +138,16 @@ class LogChecker {
       refuse_if(!log_.mailboxes || entries > node.count, "entries that no mailbox was looked up for");
       refuse_if(entries % 32 != 0 && word[2 + entries / 32] >> (entries % 32) != 0,
                 "a test beyond the entries that were looked up");
-      refuse_if(processors::tests_of_mask(word + 2, entries) >= entries, "mailboxes that left nothing out");
+      refuse_if(processors::program::tests_of_mask(word + 2, entries) >= entries,
+                "mailboxes that left nothing out");
     }
   }
 
-  const processors::WorkLog& log_;
+  const processors::program::WorkLog& log_;
   std::string fault_;
 };
 
 /// What is wrong with the log; empty: nothing.
-inline std::string fault_of(const processors::WorkLog& log) { return LogChecker(log).fault(); }
+inline std::string fault_of(const processors::program::WorkLog& log) { return LogChecker(log).fault(); }
 
 }  // namespace marti::test

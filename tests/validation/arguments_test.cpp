@@ -14,7 +14,9 @@
 namespace marti::tests {
 namespace {
 
-using namespace studies;
+using namespace studies::run;
+using namespace studies::schemes;
+using namespace studies::tables;
 
 /// The shipped study, of a smaller image.
 const SchemesConfig& shipped() {
@@ -28,7 +30,7 @@ const SchemesConfig& shipped() {
   return schemes;
 }
 
-const processors::WorkLog& log() {
+const processors::program::WorkLog& log() {
   static const FunctionalRun run = run_functional(shipped().frame);
   return *run.frame.log;
 }
@@ -75,7 +77,7 @@ TEST(Arguments, SpaceParallelEfficiencyFalls) {
 TEST(Arguments, APipelineIsLimitedByItsSlowestStage) {
   ASSERT_GT(stages().size(), 1U);
   for (const StagePoint& point : stages()) {
-    for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
+    for (std::size_t stage = 0; stage < processors::machine::pipeline_stages; ++stage) {
       EXPECT_LE(point.busy[stage], point.busy[point.slowest()]);
     }
   }

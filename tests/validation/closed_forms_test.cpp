@@ -12,9 +12,14 @@
 #include "studies/stability/cyclic_machine.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace replay;
+using namespace theory;
+
 namespace {
 
-using studies::Cyclic;
+using studies::stability::Cyclic;
 
 TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
   constexpr std::int64_t reads = 50;
@@ -33,7 +38,7 @@ TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
       const sim::Ticks z = cyclic.think;
       const sim::Ticks s = cyclic.service;
       const sim::Ticks n = nodes;
-      const MachineResult result = replay(cyclic.log, cyclic.machine);
+      const MachineResult result = replay::replay(cyclic.log, cyclic.machine);
       ASSERT_EQ(result.unloaded_miss - cyclic.machine.interconnect.clock.cycles(3), s)
           << "a material is one beat, an interleave four";
       EXPECT_EQ(cyclic.off(result, reads), 0) << nodes << " nodes";
@@ -50,7 +55,7 @@ TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
 // The bounds are near a saturated bus: they leave out the first round and the light load at the end.
 TEST(ClosedForms, ASaturatedBusIsAtItsBound) {
   const Cyclic cyclic(64, 400, 4);
-  const MachineResult result = replay(cyclic.log, cyclic.machine);
+  const MachineResult result = replay::replay(cyclic.log, cyclic.machine);
   const FrameBounds bounds = frame_bounds(cyclic.machine, result);
   EXPECT_EQ(bounds.least(), bounds.interconnect);
   EXPECT_LE(result.end - bounds.interconnect, cyclic.think + cyclic.after + 64 * cyclic.service);

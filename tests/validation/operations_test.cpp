@@ -6,6 +6,9 @@
 #include "studies/operations/unit_length.h"
 
 namespace marti::studies {
+
+using namespace operations;
+
 namespace {
 
 constexpr std::uint32_t rays = 3000;

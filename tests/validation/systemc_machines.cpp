@@ -16,7 +16,7 @@ namespace marti::oracle {
 
 namespace {
 
-using processors::MachineConfig;
+using processors::machine::MachineConfig;
 
 bool is_modelled(const MachineConfig& config) {
   try {
@@ -70,7 +70,7 @@ void make_times_equal(test::Random& random, MachineConfig& config) {
 }
 
 void make_queues_long(test::Random& random, MachineConfig& config) {
-  config.placement = processors::Placement::shared;
+  config.placement = processors::machine::Placement::shared;
   const std::uint32_t ways = config.cache.cache.ways == memory::full_ways ? 2 : config.cache.cache.ways;
   config.cache.cache.size = std::uint64_t{config.cache.cache.line} * ways;
   config.cache.split_sizes.fill(config.cache.cache.size);
@@ -137,15 +137,15 @@ std::deque<ComparedMachine> machines_of_real_frames() {
     const scenes::Scene scene = scenes::make_procedural(frame.scene);
     const auto primitives = std::make_shared<const accel::TriangleSet>(scene);
     const auto structure = accel::make_structure(frame.structure, primitives);
-    processors::RenderOptions options{.width = 20, .height = 16, .max_depth = 3, .record = true};
+    processors::program::RenderOptions options{.width = 20, .height = 16, .max_depth = 3, .record = true};
     options.mailboxes = frame.mailboxes;
     options.voxel_cut = frame.cut;
-    const auto log = processors::render(scene, *primitives, *structure, options, 1).log;
+    const auto log = processors::program::render(scene, *primitives, *structure, options, 1).log;
     MachineConfig config;
     config.clusters = machines.size() % 2 == 0 ? 1 : 2;
     config.nodes = 12;
-    config.operations = processors::cost_preset("unit");
-    config.packets = {2, 2, processors::PacketOrder::hilbert};
+    config.operations = processors::cost::cost_preset("unit");
+    config.packets = {2, 2, processors::machine::PacketOrder::hilbert};
     config.cache.cache.size = 4096;
     config.interconnect.kind =
         machines.size() % 3 == 2 ? memory::InterconnectKind::crossbar : memory::InterconnectKind::bus;

@@ -12,8 +12,8 @@ namespace marti::oracle {
 
 struct ComparedMachine {
   std::string name;  ///< how to make it again
-  processors::WorkLog log;
-  processors::MachineConfig config;
+  processors::program::WorkLog log;
+  processors::machine::MachineConfig config;
 };
 
 /// `count` machines and logs drawn from `seed`, `seed` + 1, ... A quarter have clocks of one period and steps

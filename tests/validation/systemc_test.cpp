@@ -18,9 +18,9 @@
 namespace marti::oracle {
 namespace {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 constexpr std::uint32_t random_machine_count = 240;
 
@@ -38,7 +38,7 @@ const Compared& compared() {
       result.machines.push_back(std::move(machine));
     }
     for (const ComparedMachine& machine : result.machines) {
-      result.replays.push_back(processors::replay(machine.log, machine.config));
+      result.replays.push_back(processors::replay::replay(machine.log, machine.config));
     }
     return result;
   }();
@@ -125,7 +125,7 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
     });
   }
   for (const auto organisation :
-       {processors::CacheOrganisation::unified, processors::CacheOrganisation::split}) {
+       {processors::machine::CacheOrganisation::unified, processors::machine::CacheOrganisation::split}) {
     for (const auto replacement : {memory::Replacement::lru, memory::Replacement::fifo,
                                    memory::Replacement::random, memory::Replacement::plru}) {
       expect_some("hits and misses of each cache", [=](const MachineConfig& c, const MachineResult& r) {
@@ -137,18 +137,19 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
     }
   }
   expect_some("no caches", [](const MachineConfig& c, const MachineResult&) {
-    return c.cache.organisation == processors::CacheOrganisation::none;
+    return c.cache.organisation == processors::machine::CacheOrganisation::none;
   });
   expect_some("own copies", [](const MachineConfig& c, const MachineResult&) {
-    return c.placement == processors::Placement::replicated;
+    return c.placement == processors::machine::Placement::replicated;
   });
-  for (const auto assignment : {processors::Assignment::dynamic, processors::Assignment::interleaved,
-                                processors::Assignment::blocks}) {
+  for (const auto assignment :
+       {processors::machine::Assignment::dynamic, processors::machine::Assignment::interleaved,
+        processors::machine::Assignment::blocks}) {
     expect_some("several packets for each node", [=](const MachineConfig& c, const MachineResult& r) {
       return c.host.assignment == assignment && r.packets > 2 * r.nodes.size() && r.nodes.size() > 2;
     });
   }
-  processors::StepCounts steps;
+  processors::cost::StepCounts steps;
   for (const MachineResult& result : all.replays) {
     sim::merge(steps, result.steps());
   }
@@ -160,11 +161,11 @@ TEST(SystemC, RefusesWhatItDoesNotModel) {
   EXPECT_NO_THROW(refuse_what_is_not_modelled({}));
   const std::array<std::function<void(MachineConfig&)>, 8> changes = {
       [](MachineConfig& c) { c.contexts = 2; },
-      [](MachineConfig& c) { c.l2.sharing = processors::SecondLevel::shared; },
+      [](MachineConfig& c) { c.l2.sharing = processors::machine::SecondLevel::shared; },
       [](MachineConfig& c) { c.interconnect.arbitration = memory::Arbitration::round_robin; },
-      [](MachineConfig& c) { c.build.sharing = processors::Sharing::shared; },
-      [](MachineConfig& c) { c.scheme = processors::Scheme::space; },
-      [](MachineConfig& c) { c.placement = static_cast<processors::Placement>(99); },
+      [](MachineConfig& c) { c.build.sharing = processors::machine::Sharing::shared; },
+      [](MachineConfig& c) { c.scheme = processors::machine::Scheme::space; },
+      [](MachineConfig& c) { c.placement = static_cast<processors::machine::Placement>(99); },
       [](MachineConfig& c) { c.cache.cache.replacement = static_cast<memory::Replacement>(99); },
       [](MachineConfig& c) { c.interconnect.kind = static_cast<memory::InterconnectKind>(99); }};
   for (std::size_t change = 0; change < changes.size(); ++change) {

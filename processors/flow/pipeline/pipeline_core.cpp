@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 PipelineCore::PipelineCore(const FlowParts& parts)
     : FlowNodesBase<PipelineCore>(parts),
@@ -14,12 +14,12 @@ PipelineCore::PipelineCore(const FlowParts& parts)
       queue_slots_(parts.input.config.pipeline.queue),
       send_(parts.input.config.clock.cycles(parts.input.config.messages.send_cycles)),
       receive_(parts.input.config.clock.cycles(parts.input.config.messages.receive_cycles)) {
-  const PipelineConfig& pipeline = input_.config.pipeline;
-  const std::array<std::uint32_t, pipeline_stages> sizes = {pipeline.search, pipeline.nearest,
-                                                            pipeline.shade};
+  const machine::PipelineConfig& pipeline = input_.config.pipeline;
+  const std::array<std::uint32_t, machine::pipeline_stages> sizes = {pipeline.search, pipeline.nearest,
+                                                                     pipeline.shade};
   std::uint32_t node = 0;
   for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
-    for (std::uint32_t stage = 0; stage < pipeline_stages; ++stage) {
+    for (std::uint32_t stage = 0; stage < machine::pipeline_stages; ++stage) {
       stages_.push_back({node, LoadOrder(sizes[stage])});
       for (const std::uint32_t end = node + sizes[stage]; node != end; ++node) {
         nodes_[node].stage = static_cast<Stage>(stage);
@@ -55,8 +55,9 @@ void PipelineCore::end_nodes() {
 // The node has taken the ray's last step.
 void PipelineCore::worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ticks time) {
   Node& at = nodes_[node];
-  const bool shadow = ray.kind == RayKind::shadow;
-  const bool ends_anywhere = shadow && trees_.ray(ray.tree, ray.number).first_child == LoggedRay::none;
+  const bool shadow = ray.kind == program::RayKind::shadow;
+  const bool ends_anywhere =
+      shadow && trees_.ray(ray.tree, ray.number).first_child == program::LoggedRay::none;
   if (at.stage != Stage::shade && !ends_anywhere) {
     compose(node, at, Stage::shade, time);
     return;
@@ -64,7 +65,7 @@ void PipelineCore::worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ti
   at.phase = Phase::ending;
   if (!shadow || ray.lit) {
     at.phase = Phase::contributing;
-    spend(node, Activity::messaging, send_);
+    spend(node, cost::Activity::messaging, send_);
     time = sim::add_ticks(time, send_);
   }
   post(FlowEvent::done, time, node);
@@ -72,7 +73,7 @@ void PipelineCore::worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ti
 
 void PipelineCore::watch_done(std::uint32_t node, sim::Ticks now) {
   if (nodes_[node].phase == Phase::granted) {
-    watch(node, NodeState::queue_full_wait, now, place_of(node));
+    watch(node, walk::NodeState::queue_full_wait, now, place_of(node));
   } else {
     watch_ray(node, now, ray_of(node).word);
   }
@@ -90,7 +91,7 @@ void PipelineCore::done_otherwise(std::uint32_t node, sim::Ticks now) {
       end_ray(node, now);
       return;
     case Phase::granted:
-      spend(node, Activity::queue_full_wait, now - at.since);
+      spend(node, cost::Activity::queue_full_wait, now - at.since);
       dispatch(node, at, now);
       return;
     case Phase::sending:
@@ -116,7 +117,7 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
   const std::uint32_t tree = ray.tree;
   const std::uint32_t first = trees_.ray(tree, ray.number).first_child;
   ++counts_[node].ended;
-  if (first == LoggedRay::none) {
+  if (first == program::LoggedRay::none) {
     trees_.end_ray(tree);
     rays_.give_back(at.ray);
     at.ray = none;
@@ -127,7 +128,7 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
   }
   std::vector<SetAside>& stack = set_aside_of(node);
   const std::size_t below = stack.size();
-  for (std::uint32_t child = trees_.ray(tree, first).next_sibling; child != LoggedRay::none;
+  for (std::uint32_t child = trees_.ray(tree, first).next_sibling; child != program::LoggedRay::none;
        child = trees_.ray(tree, child).next_sibling) {
     stack.push_back({tree, child});
   }
@@ -150,7 +151,7 @@ void PipelineCore::end_ray(std::uint32_t node, sim::Ticks now) {
 }
 
 void PipelineCore::start_ray(FlowRay& ray, std::uint32_t tree, std::uint32_t number) const {
-  const LoggedRay& logged = trees_.ray(tree, number);
+  const program::LoggedRay& logged = trees_.ray(tree, number);
   ray.word = logged.begin;
   ray.end = logged.end;
   ray.tree = tree;
@@ -163,8 +164,8 @@ void PipelineCore::start_ray(FlowRay& ray, std::uint32_t tree, std::uint32_t num
 // The ray set aside last enters, with the credit that the node was granted.
 void PipelineCore::send_set_aside(std::uint32_t node, sim::Ticks now) {
   Node& at = nodes_[node];
-  spend(node, Activity::message_wait, now - at.since);
-  watch(node, NodeState::message_wait, now);
+  spend(node, cost::Activity::message_wait, now - at.since);
+  watch(node, walk::NodeState::message_wait, now);
   --at.granted;
   std::vector<SetAside>& stack = set_aside_of(node);
   const SetAside next = stack.back();
@@ -280,4 +281,4 @@ std::vector<PipelineCore::SetAside>& PipelineCore::set_aside_of(std::uint32_t no
   return set_aside_[std::size_t{cluster_of(node)} * input_.config.pipeline.shade + nodes_[node].place];
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

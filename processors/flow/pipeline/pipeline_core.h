@@ -12,7 +12,7 @@
 #include "processors/flow/pixel_trees.h"
 #include "processors/flow/ray_queues.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 class PipelineCore : public FlowNodesBase<PipelineCore> {
  public:
@@ -91,12 +91,14 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   void end_nodes();
 
   [[nodiscard]] FlowRay& ray_of(std::uint32_t node) { return rays_[nodes_[node].ray]; }
-  [[nodiscard]] const LoggedRay& logged(const FlowRay& ray) const { return trees_.ray(ray.tree, ray.number); }
+  [[nodiscard]] const program::LoggedRay& logged(const FlowRay& ray) const {
+    return trees_.ray(ray.tree, ray.number);
+  }
   /// The pixel that the ray in service is for.
-  [[nodiscard]] PixelPlace place_of(std::uint32_t node) { return trees_.place(ray_of(node).tree); }
+  [[nodiscard]] walk::PixelPlace place_of(std::uint32_t node) { return trees_.place(ray_of(node).tree); }
   /// Tells of the node's work up to `to` for its ray, which has come to `word`.
   void watch_ray(std::uint32_t node, sim::Ticks to, const std::uint32_t* word) {
-    watch_work(node, to, place_of(node), word + (ray_of(node).record_read ? step_words(word) : 0));
+    watch_work(node, to, place_of(node), word + (ray_of(node).record_read ? program::step_words(word) : 0));
   }
 
   sim::LargeVector<Node> nodes_;
@@ -125,7 +127,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   };
 
   StageState& stage_state(std::uint32_t cluster, Stage stage) {
-    return stages_[cluster * pipeline_stages + static_cast<std::uint32_t>(stage)];
+    return stages_[cluster * machine::pipeline_stages + static_cast<std::uint32_t>(stage)];
   }
   void worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ticks time);
   void watch_done(std::uint32_t node, sim::Ticks now);
@@ -161,7 +163,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   void compose(std::uint32_t node, Node& at, Stage next, sim::Ticks now) {
     at.phase = Phase::sending;
     at.next = next;
-    spend(node, Activity::messaging, send_);
+    spend(node, cost::Activity::messaging, send_);
     post(FlowEvent::done, sim::add_ticks(now, send_), node);
   }
   // Sends the node's ray to its target, where a slot is reserved for it.
@@ -202,12 +204,12 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
     refresh(at);
   }
   void take(std::uint32_t node, Node& at, sim::Ticks now) {
-    TimeDivision& time = statistics_[node].time;
-    time[static_cast<std::size_t>(Activity::message_wait)] += now - at.since;
-    time[static_cast<std::size_t>(Activity::messaging)] += receive_;
+    cost::TimeDivision& time = statistics_[node].time;
+    time[static_cast<std::size_t>(cost::Activity::message_wait)] += now - at.since;
+    time[static_cast<std::size_t>(cost::Activity::messaging)] += receive_;
     at.ray = at.queue.pop(rays_);
     if (input_.observer != nullptr) [[unlikely]] {
-      watch(node, NodeState::message_wait, now);
+      watch(node, walk::NodeState::message_wait, now);
       if (input_.causes != nullptr) {
         input_.causes->took(node, at.ray, now);
       }
@@ -240,4 +242,4 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
   sim::Ticks receive_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -7,7 +7,7 @@
 #include "processors/flow/pipeline/staged_walker.h"
 #include "sim/prefetch.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// `Caches` is one of node_caches.h, or CountedCaches.
 template <class Caches>
@@ -59,7 +59,7 @@ class PipelineNodes final : public PipelineCore {
     if (input_.observer != nullptr) [[unlikely]] {
       watch_read(node, service, place_of(node));
     }
-    Cursor& cursor = cursors_[node];
+    walk::Cursor& cursor = cursors_[node];
     cursor.time = service.done;
     walker_.note_wait(cursor, service);
     walker_.pass(cursor);
@@ -83,18 +83,18 @@ class PipelineNodes final : public PipelineCore {
     }
   }
 
-  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
+  walk::SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
-  CacheCountResult cache_counts() const override { return walker_.counts(); }
+  walk::CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   std::size_t bytes_per_node() const override {
-    return sizeof(Cursor) + sizeof(Node) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(VisitTally) +
-           2 * sizeof(sim::Event);
+    return sizeof(walk::Cursor) + sizeof(Node) + sizeof(cost::NodeStatistics) + sizeof(FlowCounts) +
+           sizeof(walk::VisitTally) + 2 * sizeof(sim::Event);
   }
 
  private:
   void serve(std::uint32_t node, FlowRay& ray) override {
-    Cursor& cursor = cursors_[node];
+    walk::Cursor& cursor = cursors_[node];
     cursor.time = sim::add_ticks(engine_.now(), receive_);
     cursor.word = ray.word;
     walker_.note_ray(cursor, logged(ray));
@@ -118,14 +118,15 @@ class PipelineNodes final : public PipelineCore {
   }
 
   void work(std::uint32_t node) {
-    Cursor& cursor = cursors_[node];
-    NodeStatistics& statistics = statistics_[node];
-    VisitTally& tally = tallies_[node];
+    walk::Cursor& cursor = cursors_[node];
+    cost::NodeStatistics& statistics = statistics_[node];
+    walk::VisitTally& tally = tallies_[node];
     for (;;) {
-      const Stop stop = input_.step_by_step ? walker_.template advance<false>(node, cursor, statistics, tally)
-                                            : walker_.template advance<true>(node, cursor, statistics, tally);
-      if (stop != Stop::end) {
-        post(stop == Stop::hit ? FlowEvent::step : FlowEvent::read, cursor.time, node);
+      const walk::Stop stop = input_.step_by_step
+                                  ? walker_.template advance<false>(node, cursor, statistics, tally)
+                                  : walker_.template advance<true>(node, cursor, statistics, tally);
+      if (stop != walk::Stop::end) {
+        post(stop == walk::Stop::hit ? FlowEvent::step : FlowEvent::read, cursor.time, node);
         return;
       }
       FlowRay& ray = ray_of(node);
@@ -139,7 +140,7 @@ class PipelineNodes final : public PipelineCore {
   }
 
   void read(std::uint32_t node) {
-    const Cursor& cursor = cursors_[node];
+    const walk::Cursor& cursor = cursors_[node];
     if (input_.observer != nullptr) [[unlikely]] {
       watch_ray(node, cursor.time, cursor.word);
     }
@@ -147,7 +148,7 @@ class PipelineNodes final : public PipelineCore {
   }
 
   // Begins to read the record of the leaf at which the steps of `search` end; false if they end elsewhere.
-  bool begin_record(Cursor& cursor, std::uint32_t node, FlowRay& ray) {
+  bool begin_record(walk::Cursor& cursor, std::uint32_t node, FlowRay& ray) {
     if (cursor.word == ray.end || !visits_leaf(cursor.word)) {
       return false;
     }
@@ -160,10 +161,10 @@ class PipelineNodes final : public PipelineCore {
   const std::uint32_t* end_of_search(const FlowRay& ray) const {
     const accel::Topology& topology = input_.log.topology;
     const std::uint32_t* word = ray.word;
-    for (; word != ray.end; word += step_words(word)) {
+    for (; word != ray.end; word += program::step_words(word)) {
       // Nearly all steps are branches and leaves.
-      while (whole_visit(*word)) {
-        if (step_of(*word) == Step::leaf && walker_.has_objects(*word)) {
+      while (program::whole_visit(*word)) {
+        if (program::step_of(*word) == program::Step::leaf && walker_.has_objects(*word)) {
           return word;
         }
         if (++word == ray.end) {
@@ -180,15 +181,15 @@ class PipelineNodes final : public PipelineCore {
   static const std::uint32_t* end_of_shading(FlowRay& ray) {
     const std::uint32_t* word = ray.word;
     while (word != ray.end && stage_of(word) == Stage::shade) {
-      ray.lit = ray.lit || step_of(*word) == Step::light;
-      word += step_words(word);
+      ray.lit = ray.lit || program::step_of(*word) == program::Step::light;
+      word += program::step_words(word);
     }
     return word;
   }
 
   StagedWalker<Caches> walker_;
-  sim::LargeVector<Cursor> cursors_;
+  sim::LargeVector<walk::Cursor> cursors_;
   sim::Ticks receive_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -2,7 +2,7 @@
 
 #include "sim/error.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 namespace {
 
@@ -116,4 +116,4 @@ std::vector<std::uint64_t> distinct_primitives(const accel::Topology& topology,
   return distinct;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

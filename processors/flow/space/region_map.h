@@ -13,7 +13,7 @@
 
 #include "accel/topology.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 struct RegionMap {
   static constexpr std::uint32_t top = 0xffffffffU;
@@ -40,4 +40,4 @@ void each_distinct_primitive(const accel::Topology& topology, std::span<const st
                              std::uint32_t parts, std::uint32_t primitives,
                              const std::function<void(std::uint32_t, std::uint32_t)>& visit);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

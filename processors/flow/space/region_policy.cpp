@@ -5,7 +5,7 @@
 #include <queue>
 #include <tuple>
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 std::vector<std::uint32_t> deal_in_blocks(std::uint32_t regions, std::uint32_t parts) {
   std::vector<std::uint32_t> part_of(regions);
@@ -59,4 +59,4 @@ std::vector<std::uint32_t> deal_balanced(std::span<const std::uint64_t> weights,
   return part_of;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -7,7 +7,7 @@
 
 #include "processors/machine/flow_config.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// Runs of neighbouring regions, as equal in number as possible: region i goes to part floor(i parts /
 /// regions).
@@ -24,4 +24,4 @@ namespace marti::processors {
 [[nodiscard]] std::vector<std::uint32_t> deal_balanced(std::span<const std::uint64_t> weights,
                                                        std::uint32_t parts);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

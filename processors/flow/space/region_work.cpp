@@ -4,45 +4,47 @@
 
 #include "processors/program/ray_tree.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 namespace {
 
 // The time to compute one leaf's tests.
-sim::Ticks tests_time(const WorkLog& log, const StepTicks& ticks, const std::uint32_t* word) {
-  const accel::TopologyNode& leaf = log.topology.nodes[operand_of(*word)];
-  const std::uint32_t entries = step_of(*word) == Step::leaf ? leaf.count : word[1];
-  const std::uint32_t* const mask = step_of(*word) == Step::mailed_leaf ? word + 2 : nullptr;
-  StepCounts counts;
+sim::Ticks tests_time(const program::WorkLog& log, const cost::StepTicks& ticks, const std::uint32_t* word) {
+  const accel::TopologyNode& leaf = log.topology.nodes[program::operand_of(*word)];
+  const std::uint32_t entries = program::step_of(*word) == program::Step::leaf ? leaf.count : word[1];
+  const std::uint32_t* const mask =
+      program::step_of(*word) == program::Step::mailed_leaf ? word + 2 : nullptr;
+  cost::StepCounts counts;
   sim::Ticks time = log.mailboxes ? sim::multiply_ticks(ticks.lookup, entries) : 0;
   for (std::uint32_t entry = 0; entry < entries; ++entry) {
-    if (mask == nullptr || tested_in_mask(mask, entry)) {
+    if (mask == nullptr || program::tested_in_mask(mask, entry)) {
       const std::uint32_t primitive = log.topology.entries[leaf.first + entry];
-      time = sim::add_ticks(time, count_test(ticks, log.kind_of(primitive), counts));
+      time = sim::add_ticks(time, cost::count_test(ticks, log.kind_of(primitive), counts));
     }
   }
   return time;
 }
 
-sim::Ticks compute_time(const WorkLog& log, const StepTicks& ticks, const std::uint32_t* word) {
-  switch (step_of(*word)) {
-    case Step::branch:
+sim::Ticks compute_time(const program::WorkLog& log, const cost::StepTicks& ticks,
+                        const std::uint32_t* word) {
+  switch (program::step_of(*word)) {
+    case program::Step::branch:
       return ticks.branch;
-    case Step::leaf:
-    case Step::partial_leaf:
-    case Step::mailed_leaf:
+    case program::Step::leaf:
+    case program::Step::partial_leaf:
+    case program::Step::mailed_leaf:
       return sim::add_ticks(ticks.leaf, tests_time(log, ticks, word));
-    case Step::ray:
-      return ticks.ray[ray_number_of(operand_of(*word))];
-    case Step::shade:
+    case program::Step::ray:
+      return ticks.ray[program::ray_number_of(program::operand_of(*word))];
+    case program::Step::shade:
       return ticks.shade;
-    case Step::light:
+    case program::Step::light:
       return ticks.light;
-    case Step::texel:
+    case program::Step::texel:
       return ticks.texel;
-    case Step::cut:
+    case program::Step::cut:
       return ticks.cut;
-    case Step::pass:
+    case program::Step::pass:
       return ticks.pass;
   }
   return 0;
@@ -50,11 +52,12 @@ sim::Ticks compute_time(const WorkLog& log, const StepTicks& ticks, const std::u
 
 // The region whose tree node the step reads, or RegionMap::top.
 std::uint32_t region_of_step(const RegionMap& regions, std::uint32_t word) {
-  return visits_node(step_of(word)) ? regions.region_of[operand_of(word)] : RegionMap::top;
+  return program::visits_node(program::step_of(word)) ? regions.region_of[program::operand_of(word)]
+                                                      : RegionMap::top;
 }
 
-std::uint32_t first_region(const RegionMap& regions, const LoggedRay& ray) {
-  for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+std::uint32_t first_region(const RegionMap& regions, const program::LoggedRay& ray) {
+  for (const std::uint32_t* word = ray.begin; word != ray.end; word += program::step_words(word)) {
     if (const std::uint32_t region = region_of_step(regions, *word); region != RegionMap::top) {
       return region;
     }
@@ -64,25 +67,25 @@ std::uint32_t first_region(const RegionMap& regions, const LoggedRay& ray) {
 
 }  // namespace
 
-RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepTicks& ticks,
+RegionWork sample_work(const program::WorkLog& log, const RegionMap& regions, const cost::StepTicks& ticks,
                        std::uint32_t step) {
   RegionWork work;
   work.of.assign(regions.size(), 0);
-  std::vector<LoggedRay> rays;
+  std::vector<program::LoggedRay> rays;
   std::vector<std::uint32_t> ended_in;
   for (std::uint64_t y = 0; y < log.height; y += step) {
     for (std::uint64_t x = 0; x < log.width; x += step) {
       std::span<const std::uint32_t> left =
           log.pixel(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
       while (!left.empty()) {
-        const std::span<const std::uint32_t> sample = first_sample(log, left);
+        const std::span<const std::uint32_t> sample = program::first_sample(log, left);
         left = left.subspan(sample.size());
-        rays_of_sample(sample, rays);
+        program::rays_of_sample(sample, rays);
         ended_in.clear();
-        for (const LoggedRay& ray : rays) {
+        for (const program::LoggedRay& ray : rays) {
           std::uint32_t at =
-              ray.parent == LoggedRay::none ? first_region(regions, ray) : ended_in[ray.parent];
-          for (const std::uint32_t* word = ray.begin; word != ray.end; word += step_words(word)) {
+              ray.parent == program::LoggedRay::none ? first_region(regions, ray) : ended_in[ray.parent];
+          for (const std::uint32_t* word = ray.begin; word != ray.end; word += program::step_words(word)) {
             const std::uint32_t entered = region_of_step(regions, *word);
             at = entered == RegionMap::top ? at : entered;
             const sim::Ticks time = compute_time(log, ticks, word);
@@ -99,4 +102,4 @@ RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepT
   return work;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -9,7 +9,7 @@
 #include "processors/program/work_log.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 struct RegionWork {
   std::vector<std::uint64_t> of;  ///< ticks in each region
@@ -19,7 +19,7 @@ struct RegionWork {
 /// The compute time of every `step`-th pixel of every `step`-th row, both from 0 on, without memory and
 /// messages. A step counts for the region that its ray visited last; before its first visit, for the region
 /// where the ray was made or, for a camera ray, the first region on its way.
-[[nodiscard]] RegionWork sample_work(const WorkLog& log, const RegionMap& regions, const StepTicks& ticks,
-                                     std::uint32_t step);
+[[nodiscard]] RegionWork sample_work(const program::WorkLog& log, const RegionMap& regions,
+                                     const cost::StepTicks& ticks, std::uint32_t step);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -18,7 +18,7 @@
 #include "sim/large_pages.h"
 #include "sim/prefetch.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// `Caches` is one of node_caches.h, or CountedCaches. The members are described in node_array.h.
 template <class Caches>
@@ -107,13 +107,13 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     result.sampling_work = plan_.sampling_work;
   }
 
-  SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
+  walk::SecondLevelResult second_level() const override { return walker_.behind().second_level().result(); }
 
-  CacheCountResult cache_counts() const override { return walker_.counts(); }
+  walk::CacheCountResult cache_counts() const override { return walker_.counts(); }
 
   std::size_t bytes_per_node() const override {
-    return sizeof(Node) + sizeof(Cursor) + sizeof(NodeStatistics) + sizeof(FlowCounts) + sizeof(VisitTally) +
-           sizeof(sim::Event) + rays_.bytes() / nodes_.size();
+    return sizeof(Node) + sizeof(walk::Cursor) + sizeof(cost::NodeStatistics) + sizeof(FlowCounts) +
+           sizeof(walk::VisitTally) + sizeof(sim::Event) + rays_.bytes() / nodes_.size();
   }
 
  private:
@@ -142,7 +142,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   // The number in its cluster of the node that holds the tree node which a step reads; RegionMap::top when
   // every node holds it or the step reads none.
   [[nodiscard]] std::uint32_t owner_of(std::uint32_t word) const {
-    return visits_node(step_of(word)) ? owner_[operand_of(word)] : RegionMap::top;
+    return program::visits_node(program::step_of(word)) ? owner_[program::operand_of(word)] : RegionMap::top;
   }
 
   // --- the host ---
@@ -180,7 +180,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   // The node that a camera ray is sent to. Rays that visit only the top are dealt to the nodes in turn.
   [[nodiscard]] std::uint32_t first_owner(const FlowRay& ray) const {
-    for (const std::uint32_t* word = ray.word; word != ray.end; word += step_words(word)) {
+    for (const std::uint32_t* word = ray.word; word != ray.end; word += program::step_words(word)) {
       if (const std::uint32_t owner = owner_of(*word); owner != RegionMap::top) {
         return owner;
       }
@@ -190,7 +190,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   std::uint32_t new_ray(std::uint32_t tree, std::uint32_t number) {
     const std::uint32_t index = rays_.take();
-    const LoggedRay& logged = trees_.ray(tree, number);
+    const program::LoggedRay& logged = trees_.ray(tree, number);
     FlowRay& ray = rays_[index];
     ray = {};
     ray.word = logged.begin;
@@ -247,8 +247,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       return;  // outdated: another message arrived earlier and has its own event
     }
     node.wake_at = never;
-    spend(number, Activity::message_wait, now - cursors_[number].time);
-    watch(number, NodeState::message_wait, now);
+    spend(number, cost::Activity::message_wait, now - cursors_[number].time);
+    watch(number, walk::NodeState::message_wait, now);
     take(number, now);
   }
 
@@ -279,9 +279,9 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     FlowCounts& counts = counts_[number];
     ++counts.taken;
     counts.queued = sim::add_ticks(counts.queued, now - rays_[ray].arrival);
-    Cursor& cursor = cursors_[number];
+    walk::Cursor& cursor = cursors_[number];
     cursor.time = sim::add_ticks(now, receive_);
-    spend(number, Activity::messaging, receive_);
+    spend(number, cost::Activity::messaging, receive_);
     nodes_[number].current = ray;  // marks the node as busy, so that send() posts no wake event
     if (nodes_[number].waiting.head != RayPool::none) {
       const std::uint32_t waited = nodes_[number].waiting.pop(rays_);
@@ -298,7 +298,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   void serve(std::uint32_t number, std::uint32_t index) {
     nodes_[number].current = index;
     FlowRay& ray = rays_[index];
-    Cursor& cursor = cursors_[number];
+    walk::Cursor& cursor = cursors_[number];
     cursor.word = ray.word;
     walker_.note_ray(cursor, trees_.ray(ray.tree, ray.number));
     cursor.word_end = last_word_here(port_of(number), ray);
@@ -309,9 +309,9 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   const std::uint32_t* last_word_here(std::uint32_t port, FlowRay& ray) const {
     const std::uint32_t* word = ray.word;
     const std::uint32_t* const end = ray.end;
-    for (; word != end; word += step_words(word)) {
-      while (whole_visit(*word)) {
-        const std::uint32_t owner = owner_[operand_of(*word)];
+    for (; word != end; word += program::step_words(word)) {
+      while (program::whole_visit(*word)) {
+        const std::uint32_t owner = owner_[program::operand_of(*word)];
         if ((owner != port && owner != RegionMap::top) || ++word == end) {
           return word;
         }
@@ -320,16 +320,16 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       if (owner != port && owner != RegionMap::top) {
         break;
       }
-      ray.lit |= step_of(*word) == Step::light;
+      ray.lit |= program::step_of(*word) == program::Step::light;
     }
     return word;
   }
 
   void run(std::uint32_t number) {
-    Cursor& cursor = cursors_[number];
-    NodeStatistics& statistics = statistics_[number];
+    walk::Cursor& cursor = cursors_[number];
+    cost::NodeStatistics& statistics = statistics_[number];
     if (input_.step_by_step) {
-      if (walker_.template advance<false>(number, cursor, statistics, tallies_[number]) != Stop::end) {
+      if (walker_.template advance<false>(number, cursor, statistics, tallies_[number]) != walk::Stop::end) {
         post(FlowEvent::step, cursor.time, number);
         return;
       }
@@ -339,7 +339,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     const FlowRay& ray = rays_[nodes_[number].current];
     if (cursor.word != ray.end || contributes(ray)) {
       cursor.time = sim::add_ticks(cursor.time, send_);
-      spend(number, Activity::messaging, send_);
+      spend(number, cost::Activity::messaging, send_);
     }
     post(FlowEvent::done, cursor.time, number);
     fetch_what_comes_next(number, ray);
@@ -357,7 +357,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   }
 
   // Whether a ray adds to its pixel when it ends; a shadow ray only does if it has reached its light.
-  static bool contributes(const FlowRay& ray) { return ray.kind != RayKind::shadow || ray.lit; }
+  static bool contributes(const FlowRay& ray) { return ray.kind != program::RayKind::shadow || ray.lit; }
 
   void done(std::uint32_t number, sim::Ticks now) {
     const std::uint32_t ray = std::exchange(nodes_[number].current, RayPool::none);
@@ -397,8 +397,8 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
   void make_rays(std::uint32_t number, const FlowRay& parent) {
     std::uint32_t last = RayPool::none;
     const std::uint32_t older = nodes_[number].made;
-    for (std::uint32_t child = trees_.ray(parent.tree, parent.number).first_child; child != LoggedRay::none;
-         child = trees_.ray(parent.tree, child).next_sibling) {
+    for (std::uint32_t child = trees_.ray(parent.tree, parent.number).first_child;
+         child != program::LoggedRay::none; child = trees_.ray(parent.tree, child).next_sibling) {
       const std::uint32_t ray = new_ray(parent.tree, child);
       trees_.begin_ray(parent.tree);
       host_.enter(cluster_of(number));
@@ -413,15 +413,15 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
 
   const SpacePlan& plan_;
   const std::uint32_t* owner_;
-  LogWalker<Caches> walker_;
+  walk::LogWalker<Caches> walker_;
   RayPool rays_;
   PixelTrees trees_;
   sim::LargeVector<Node> nodes_;
-  sim::LargeVector<Cursor> cursors_;
+  sim::LargeVector<walk::Cursor> cursors_;
   std::vector<Admission> admissions_;
   std::uint32_t slots_;
   sim::Ticks send_;
   sim::Ticks receive_;
 };
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

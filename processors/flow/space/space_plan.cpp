@@ -7,24 +7,26 @@
 #include "processors/flow/space/region_work.h"
 #include "sim/key_error.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 namespace {
 
 using memory::RecordKind;
 
-std::vector<std::uint32_t> deal(const WorkLog& log, const MachineConfig& config, SpacePlan& plan) {
+std::vector<std::uint32_t> deal(const program::WorkLog& log, const machine::MachineConfig& config,
+                                SpacePlan& plan) {
   const RegionMap& regions = plan.regions;
   switch (config.space.policy) {
-    case RegionPolicy::blocks:
+    case machine::RegionPolicy::blocks:
       return deal_in_blocks(regions.size(), config.nodes);
-    case RegionPolicy::scatter:
+    case machine::RegionPolicy::scatter:
       return deal_scattered(regions.size(), config.nodes);
-    case RegionPolicy::balanced:
+    case machine::RegionPolicy::balanced:
       return deal_balanced(
           distinct_primitives(log.topology, regions.region_of, regions.size(), log.primitives), config.nodes);
-    case RegionPolicy::sampled: {
-      const RegionWork work = sample_work(log, regions, step_ticks(config, log), config.space.sample_step);
+    case machine::RegionPolicy::sampled: {
+      const RegionWork work =
+          sample_work(log, regions, cost::step_ticks(config, log), config.space.sample_step);
       plan.sampling_work = work.total;
       return deal_balanced(work.of, config.nodes);
     }
@@ -39,13 +41,13 @@ std::uint64_t stride_of(const memory::Layout& layout, std::uint64_t primitive) {
 }
 
 // Bytes of the record of a tree node; the leaves of a bounding volume hierarchy have none.
-std::uint64_t record_bytes(const WorkLog& log, const memory::Layout& layout, std::size_t number) {
+std::uint64_t record_bytes(const program::WorkLog& log, const memory::Layout& layout, std::size_t number) {
   return log.topology.nodes[number].leaf && accel::walks_bvh(log.traversal) ? 0
                                                                             : layout.stride(RecordKind::node);
 }
 
 // Bytes of the records that every node has.
-std::uint64_t top_bytes(const WorkLog& log, const memory::Layout& layout, const SpacePlan& plan) {
+std::uint64_t top_bytes(const program::WorkLog& log, const memory::Layout& layout, const SpacePlan& plan) {
   std::uint64_t bytes = 0;
   for (std::size_t number = 0; number < plan.owner.size(); ++number) {
     bytes += plan.owner[number] == RegionMap::top ? record_bytes(log, layout, number) : 0;
@@ -54,7 +56,7 @@ std::uint64_t top_bytes(const WorkLog& log, const memory::Layout& layout, const 
 }
 
 // Adds the records of each node's regions to its memory, and counts primitives that are held twice or more.
-void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& plan) {
+void add_regions(const program::WorkLog& log, const memory::Layout& layout, SpacePlan& plan) {
   const accel::Topology& topology = log.topology;
   for (std::size_t number = 0; number < topology.nodes.size(); ++number) {
     if (plan.owner[number] != RegionMap::top) {
@@ -75,7 +77,8 @@ void add_regions(const WorkLog& log, const memory::Layout& layout, SpacePlan& pl
 
 }  // namespace
 
-SpacePlan plan_space(const WorkLog& log, const MachineConfig& config, const memory::Layout& layout) {
+SpacePlan plan_space(const program::WorkLog& log, const machine::MachineConfig& config,
+                     const memory::Layout& layout) {
   if (config.space.level == 0) {
     throw sim::KeyError("space.level", "the root is level 1");
   }
@@ -100,4 +103,4 @@ SpacePlan plan_space(const WorkLog& log, const MachineConfig& config, const memo
   return plan;
 }
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -10,7 +10,7 @@
 #include "processors/program/work_log.h"
 #include "sim/time.h"
 
-namespace marti::processors {
+namespace marti::processors::flow {
 
 /// Every cluster holds the whole scene, and all are divided in the same way.
 struct SpacePlan {
@@ -25,7 +25,7 @@ struct SpacePlan {
 /// A node's memory holds the top, the records and lists of its regions, one record of each primitive that
 /// they list, all materials and all textures. Throws UserError for a level, a sample step or a message buffer
 /// of 0.
-[[nodiscard]] SpacePlan plan_space(const WorkLog& log, const MachineConfig& config,
+[[nodiscard]] SpacePlan plan_space(const program::WorkLog& log, const machine::MachineConfig& config,
                                    const memory::Layout& layout);
 
-}  // namespace marti::processors
+}  // namespace marti::processors::flow

@@ -4,7 +4,7 @@
 
 #include "studies/tables/json_table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 ReportChart chart_with(std::string_view specification, const std::string& name, const std::string& title,
                        const Json& rows, ChartWords words = {}) {
-  std::string text(chart_named(report_chart_specifications(), specification).json);
+  std::string text(tables::chart_named(report_chart_specifications(), specification).json);
   for (const auto& [word, other] : words) {
     for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += other.size()) {
       text.replace(at, word.size(), other);
@@ -29,8 +29,8 @@ ReportChart chart_with(std::string_view specification, const std::string& name, 
 
 }  // namespace
 
-ReportChart make_chart(std::string_view specification, const Table& table, const std::string& note) {
-  ReportChart chart = chart_with(specification, table.name(), table.title(), rows_json(table));
+ReportChart make_chart(std::string_view specification, const tables::Table& table, const std::string& note) {
+  ReportChart chart = chart_with(specification, table.name(), table.title(), tables::rows_json(table));
   chart.note = note;
   return chart;
 }
@@ -42,10 +42,10 @@ ReportChart live_chart(std::string_view specification, const std::string& name, 
   return chart;
 }
 
-ReportChart chart_of_results(const ChartSpecification& specification, const Json& rows) {
+ReportChart chart_of_results(const tables::ChartSpecification& specification, const Json& rows) {
   ReportChart chart;
   chart.name = specification.name;
-  chart.spec = chart_json(specification, rows);
+  chart.spec = tables::chart_json(specification, rows);
   chart.title = chart.spec.value("title", chart.name);
   return chart;
 }
@@ -58,4 +58,4 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

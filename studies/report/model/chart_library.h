@@ -12,14 +12,14 @@
 #include "studies/tables/chart.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// All specifications, in alphabetical order.
-[[nodiscard]] std::span<const ChartSpecification> report_chart_specifications();
+[[nodiscard]] std::span<const tables::ChartSpecification> report_chart_specifications();
 
 /// The chart of that specification with the rows of `table`. Its name and title are the table's. Throws
 /// InternalError when there is no such specification.
-[[nodiscard]] ReportChart make_chart(std::string_view specification, const Table& table,
+[[nodiscard]] ReportChart make_chart(std::string_view specification, const tables::Table& table,
                                      const std::string& note = {});
 
 /// Words of a specification, and what stands in their place.
@@ -31,11 +31,11 @@ using ChartWords = std::initializer_list<std::pair<std::string_view, std::string
                                      ChartWords words = {});
 
 /// A chart that a run or a study has written beside its results, with these rows.
-[[nodiscard]] ReportChart chart_of_results(const ChartSpecification& specification,
+[[nodiscard]] ReportChart chart_of_results(const tables::ChartSpecification& specification,
                                            const nlohmann::ordered_json& rows);
 
 /// A name as charts, files and elements of the page have it: every other character than lower-case letters
 /// and digits becomes '_'.
 [[nodiscard]] std::string plain_name(std::string name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

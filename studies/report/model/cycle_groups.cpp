@@ -2,12 +2,12 @@
 
 #include "processors/cost/accounting.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
-std::size_t group_of(processors::Activity activity) {
-  using processors::Activity;
+std::size_t group_of(processors::cost::Activity activity) {
+  using processors::cost::Activity;
   switch (activity) {
     case Activity::traversal:
       return 0;
@@ -38,10 +38,11 @@ std::size_t group_of(processors::Activity activity) {
 
 std::array<double, cycle_groups> group_cycles(const std::function<double(std::string_view)>& of_activity) {
   std::array<double, cycle_groups> parts{};
-  for (std::size_t i = 0; i < processors::activity_names.size(); ++i) {
-    parts[group_of(static_cast<processors::Activity>(i))] += of_activity(processors::activity_names[i]);
+  for (std::size_t i = 0; i < processors::cost::activity_names.size(); ++i) {
+    parts[group_of(static_cast<processors::cost::Activity>(i))] +=
+        of_activity(processors::cost::activity_names[i]);
   }
   return parts;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 inline constexpr std::size_t cycle_groups = 9;
 
@@ -25,4 +25,4 @@ inline constexpr std::array<std::string_view, cycle_groups> cycle_group_names = 
 [[nodiscard]] std::array<double, cycle_groups> group_cycles(
     const std::function<double(std::string_view)>& of_activity);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -12,7 +12,7 @@
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/rounded.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -121,12 +121,12 @@ bool is_catalogued(const ExplorerField& field) {
 // Parts of a whole, which people read in percent.
 bool is_share(const ExplorerField& field) {
   return field.name.starts_with(group_prefix) ||
-         (is_catalogued(field) && figure_named(field.name).unit == "fraction");
+         (is_catalogued(field) && figures::figure_named(field.name).unit == "fraction");
 }
 
 std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
   if (is_catalogued(field)) {
-    return figure_named(field.name).description;
+    return figures::figure_named(field.name).description;
   }
   if (field.name == "price") {
     return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
@@ -254,4 +254,4 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
   return json;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

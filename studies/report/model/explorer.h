@@ -10,7 +10,7 @@
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/model/sweep_model.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// What a chart over an axis of names says of itself.
 inline constexpr const char* no_curve =
@@ -22,4 +22,4 @@ inline constexpr const char* no_curve =
                                                    std::span<const AxisModel> models, const Chosen& chosen,
                                                    std::optional<std::size_t> axis);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

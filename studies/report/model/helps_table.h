@@ -4,9 +4,9 @@
 #include "studies/tables/run_json.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// All steps of the result's field machine.what_helps; without rows where it is missing.
-[[nodiscard]] Table helps_table(const RunJson& run);
+[[nodiscard]] tables::Table helps_table(const tables::RunJson& run);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "studies/report/model/rounded.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -31,8 +31,8 @@ std::size_t queues_of(double count, const PointCounters& counters) {
   return each > 0.0 ? static_cast<std::size_t>(std::min(each, most_queues)) : 0;
 }
 
-processors::ClosedNetwork network_of(const PointCounters& counters) {
-  processors::ClosedNetwork network;
+processors::theory::ClosedNetwork network_of(const PointCounters& counters) {
+  processors::theory::ClosedNetwork network;
   network.customers = static_cast<std::uint64_t>(std::clamp(std::round(customers_of(counters)), 1.0, 1e9));
   const double around = counters.reads > 0.0 ? counters.reads : 1.0;
   if (counters.reads > 0.0) {
@@ -76,15 +76,15 @@ PointCounters interpolate(const PointCounters& a, const PointCounters& b, double
 }  // namespace
 
 double closed_network_end(const PointCounters& counters) {
-  const processors::ClosedNetwork network = network_of(counters);
+  const processors::theory::ClosedNetwork network = network_of(counters);
   if (network.think + network.demand() <= 0.0) {
     return counters.end;
   }
-  return cycles_of(counters) / processors::mean_values(network, most_exact_work).throughput;
+  return cycles_of(counters) / processors::theory::mean_values(network, most_exact_work).throughput;
 }
 
 double asymptotic_end(const PointCounters& counters) {
-  const processors::ClosedNetwork network = network_of(counters);
+  const processors::theory::ClosedNetwork network = network_of(counters);
   const double cycles = cycles_of(counters);
   // Rounded up to a whole node: with fewer nodes the work takes longer, so this stays a lower bound. A
   // fraction of 1e-12 comes from rounding in the interpolation and does not count.
@@ -191,4 +191,4 @@ ModelError LeaveOneOut::summary(std::vector<double> errors) {
   return error;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// What the counters of an exact point say; sums over a machine of any number of clusters. Times in ps.
 struct PointCounters {
@@ -100,4 +100,4 @@ class LeaveOneOut {
   std::vector<double> speed_up_[2];
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

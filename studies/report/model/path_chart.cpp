@@ -6,14 +6,15 @@
 #include "studies/report/model/run_charts.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
-void add_path_chart(const RunJson& run, ReportData& report) {
-  Table table("run_path", "The critical path",
-              {{"what", ColumnType::text, "", "what is done, see docs/model.md, The critical path"},
-               {"ps", ColumnType::integer, "ps", "time of it on the path"},
-               {"share", ColumnType::real, "fraction", "of the frame time"}});
-  const RunJson times = run.part("machine.critical_path.time_ps");
+void add_path_chart(const tables::RunJson& run, ReportData& report) {
+  tables::Table table(
+      "run_path", "The critical path",
+      {{"what", tables::ColumnType::text, "", "what is done, see docs/model.md, The critical path"},
+       {"ps", tables::ColumnType::integer, "ps", "time of it on the path"},
+       {"share", tables::ColumnType::real, "fraction", "of the frame time"}});
+  const tables::RunJson times = run.part("machine.critical_path.time_ps");
   if (!times.json().is_object()) {
     return;
   }
@@ -33,4 +34,4 @@ void add_path_chart(const RunJson& run, ReportData& report) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

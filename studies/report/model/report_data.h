@@ -8,7 +8,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct ReportChart {
   std::string name;   ///< lower-case letters, digits and '_'; unique in the report
@@ -22,7 +22,7 @@ struct ReportChart {
 };
 
 struct ReportTable {
-  Table table;
+  tables::Table table;
   bool folded = true;  ///< shown on demand only
 };
 
@@ -54,4 +54,4 @@ struct ReportData {
   return report.about.empty() ? report.title : report.title + "; " + report.about;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

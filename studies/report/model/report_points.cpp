@@ -4,9 +4,11 @@
 
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
-double ReportAxis::number(std::size_t value) const { return number_of(values.at(value)).value_or(0.0); }
+double ReportAxis::number(std::size_t value) const {
+  return tables::number_of(values.at(value)).value_or(0.0);
+}
 
 double ReportPoint::figure(std::string_view name) const {
   const auto at = figures.find(name);
@@ -19,4 +21,4 @@ std::optional<std::size_t> ReportPoints::axis(std::string_view name) const {
   return at == axes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - axes.begin()));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -11,13 +11,13 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Something that the sweep varies: a key, with the keys that change together with it.
 struct ReportAxis {
   std::string name;                    ///< of the key; "point" for named points
   std::vector<std::string> followers;  ///< keys whose values follow from this one's
-  std::vector<Cell> values;            ///< ascending, or of texts in the order of the points
+  std::vector<tables::Cell> values;    ///< ascending, or of texts in the order of the points
   std::vector<std::string> texts;      ///< the values for people: "16 KiB"
   bool numeric = false;
   bool logarithmic = false;  ///< all above 0, and further apart at the upper end
@@ -56,4 +56,4 @@ struct ReportPoints {
   [[nodiscard]] std::optional<std::size_t> axis(std::string_view name) const;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

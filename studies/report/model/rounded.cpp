@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 double rounded(double value, int digits) {
   if (!std::isfinite(value)) {
@@ -18,4 +18,4 @@ double rounded(double value, int digits) {
   return result;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

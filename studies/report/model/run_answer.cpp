@@ -8,7 +8,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -17,10 +17,10 @@ constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
 constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
 // Where most of the lost speed-up went.
-std::string largest_loss(const RunJson& run) {
+std::string largest_loss(const tables::RunJson& run) {
   std::pair<std::string, double> largest = {"", 0.0};
   double all = 0.0;
-  for (const std::string_view loss : loss_names) {
+  for (const std::string_view loss : figures::loss_names) {
     const std::string name(loss);
     const std::optional<double> value =
         run.optional_number("figures.machine.lost_" + name, -most_figure, most_figure);
@@ -39,7 +39,7 @@ std::string largest_loss(const RunJson& run) {
                      largest.second, words(largest.first));
 }
 
-std::string bound_sentence(const RunJson& run) {
+std::string bound_sentence(const tables::RunJson& run) {
   const std::optional<double> least =
       run.optional_number("machine.bounds.frame_time_at_least_ps", 0.0, longest);
   const double end = run.required_number("figures.machine.end", 1.0, longest);
@@ -52,7 +52,7 @@ std::string bound_sentence(const RunJson& run) {
       time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / end));
 }
 
-std::string saturation_sentence(const RunJson& run) {
+std::string saturation_sentence(const tables::RunJson& run) {
   const std::optional<double> nodes =
       run.optional_number("machine.bounds.prediction.saturation_nodes", 0.0, most_figure);
   const std::optional<double> error =
@@ -69,14 +69,14 @@ std::string saturation_sentence(const RunJson& run) {
 
 }  // namespace
 
-std::string machine_text(const RunJson& run) {
+std::string machine_text(const tables::RunJson& run) {
   const double clusters = run.required_number("figures.machine.clusters", 1.0, most_nodes);
   const double nodes = run.required_number("figures.machine.nodes", clusters, most_nodes) / clusters;
   const std::string each = fmt::format("{:.0f} node{}", nodes, nodes == 1.0 ? "" : "s");
   return clusters > 1.0 ? fmt::format("{:.0f} clusters of {}", clusters, each) : each;
 }
 
-std::vector<std::string> answer_of(const RunJson& run, const std::string& base) {
+std::vector<std::string> answer_of(const tables::RunJson& run, const std::string& base) {
   std::vector<std::string> answer;
   std::string first =
       fmt::format("A frame takes {} on {}",
@@ -98,4 +98,4 @@ std::vector<std::string> answer_of(const RunJson& run, const std::string& base) 
   return answer;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -15,7 +15,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/chart_library.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -38,22 +38,22 @@ std::int64_t times(std::int64_t a, std::int64_t b) {
   return product;
 }
 
-void add(ReportData& report, const Table& table, const std::string& note = {}) {
+void add(ReportData& report, const tables::Table& table, const std::string& note = {}) {
   if (!table.rows().empty()) {
     report.charts.push_back(make_chart(table.name(), table, note));
   }
 }
 
-Table cycles_table(const RunJson& run) {
-  Table table("run_cycles", "Where the nodes' time goes",
-              {{"activity", ColumnType::text, "", "see docs/model.md, Accounting"},
-               {"ps", ColumnType::integer, "ps", "time of all nodes"},
-               {"share", ColumnType::real, "fraction", "of all nodes' time"}});
+tables::Table cycles_table(const tables::RunJson& run) {
+  tables::Table table("run_cycles", "Where the nodes' time goes",
+                      {{"activity", tables::ColumnType::text, "", "see docs/model.md, Accounting"},
+                       {"ps", tables::ColumnType::integer, "ps", "time of all nodes"},
+                       {"share", tables::ColumnType::real, "fraction", "of all nodes' time"}});
   double all = 0.0;
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     all += run.count("figures.machine.time_" + std::string(activity));
   }
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     const std::int64_t ps = whole(run, "figures.machine.time_" + std::string(activity));
     if (ps > 0) {
       table.add_row({std::string(activity), ps, static_cast<double>(ps) / all});
@@ -62,46 +62,47 @@ Table cycles_table(const RunJson& run) {
   return table;
 }
 
-Table energy_table(const RunJson& run) {
-  Table table("run_energy", "Where the energy goes",
-              {{"part", ColumnType::text, "", "see docs/model.md, Energy"},
-               {"fj", ColumnType::integer, "fJ", "energy of the frame"},
-               {"share", ColumnType::real, "fraction", "of all energy"}});
+tables::Table energy_table(const tables::RunJson& run) {
+  tables::Table table("run_energy", "Where the energy goes",
+                      {{"part", tables::ColumnType::text, "", "see docs/model.md, Energy"},
+                       {"fj", tables::ColumnType::integer, "fJ", "energy of the frame"},
+                       {"share", tables::ColumnType::real, "fraction", "of all energy"}});
   const double all = run.count("figures.machine.energy_total");
-  for (std::size_t i = 0; all > 0.0 && i < processors::energy_parts; ++i) {
-    const std::string part(processors::EnergyResult::counters().at(i).name);
+  for (std::size_t i = 0; all > 0.0 && i < processors::energy::energy_parts; ++i) {
+    const std::string part(processors::energy::EnergyResult::counters().at(i).name);
     const std::int64_t fj = whole(run, "figures.machine.energy_" + part);
     table.add_row({part, fj, static_cast<double>(fj) / all});
   }
   return table;
 }
 
-Table loss_table(const RunJson& run) {
-  Table table("run_loss", "Where the lost speed-up went",
-              {{"part", ColumnType::text, "", "see docs/model.md, Speed-up"},
-               {"lost", ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
+tables::Table loss_table(const tables::RunJson& run) {
+  tables::Table table("run_loss", "Where the lost speed-up went",
+                      {{"part", tables::ColumnType::text, "", "see docs/model.md, Speed-up"},
+                       {"lost", tables::ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
   if (run.count("figures.machine.nodes") <= 1.0) {
     return table;
   }
   std::vector<double> parts;
-  for (const std::string_view loss : loss_names) {
+  for (const std::string_view loss : figures::loss_names) {
     if (const std::optional<double> lost = run.number("figures.machine.lost_" + std::string(loss))) {
       parts.push_back(*lost);
     }
   }
   // A store of an older format has not all of them.
-  for (std::size_t i = 0; parts.size() == loss_names.size() && i < parts.size(); ++i) {
-    table.add_row({std::string(loss_names[i]), parts[i]});
+  for (std::size_t i = 0; parts.size() == figures::loss_names.size() && i < parts.size(); ++i) {
+    table.add_row({std::string(figures::loss_names[i]), parts[i]});
   }
   return table;
 }
 
-Table references_table(const RunJson& run) {
-  Table table("run_references", "References and hit ratio by kind of record",
-              {{"record", ColumnType::text, "", "kind of record"},
-               {"hits", ColumnType::integer, "1", "references that hit the first-level cache"},
-               {"misses", ColumnType::integer, "1", "references that missed"},
-               {"hit_ratio", ColumnType::real, "fraction", "hits by both"}});
+tables::Table references_table(const tables::RunJson& run) {
+  tables::Table table(
+      "run_references", "References and hit ratio by kind of record",
+      {{"record", tables::ColumnType::text, "", "kind of record"},
+       {"hits", tables::ColumnType::integer, "1", "references that hit the first-level cache"},
+       {"misses", tables::ColumnType::integer, "1", "references that missed"},
+       {"hit_ratio", tables::ColumnType::real, "fraction", "hits by both"}});
   for (const std::string_view kind : memory::record_kind_names) {
     const std::string prefix = "figures.machine." + std::string(kind);
     const std::int64_t hits = whole(run, prefix + "_hits");
@@ -114,36 +115,36 @@ Table references_table(const RunJson& run) {
 }
 
 // A size of the run's own configuration; 0, and the chart leaves it out, where it has none.
-std::int64_t size_of(const RunJson& run, const std::string& key) {
-  const RunJson keys = run.part("config.keys");
+std::int64_t size_of(const tables::RunJson& run, const std::string& key) {
+  const tables::RunJson keys = run.part("config.keys");
   const auto setting = keys.json().find(key);
   return setting == keys.json().end() ? 0 : std::max<std::int64_t>(0, whole(keys.of(*setting), "value"));
 }
 
-Table tree_table(const RunJson& run) {
-  Table table("run_tree", "The tree by level",
-              {{"level", ColumnType::integer, "1", "from 1, the root"},
-               {"branches", ColumnType::integer, "1", "branches"},
-               {"leaves", ColumnType::integer, "1", "leaves, empty ones included"},
-               {"empty_leaves", ColumnType::integer, "1", "leaves without objects"},
-               {"entries", ColumnType::integer, "1", "object references"}});
+tables::Table tree_table(const tables::RunJson& run) {
+  tables::Table table("run_tree", "The tree by level",
+                      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
+                       {"branches", tables::ColumnType::integer, "1", "branches"},
+                       {"leaves", tables::ColumnType::integer, "1", "leaves, empty ones included"},
+                       {"empty_leaves", tables::ColumnType::integer, "1", "leaves without objects"},
+                       {"entries", tables::ColumnType::integer, "1", "object references"}});
   std::int64_t level = 0;
-  for (const RunJson& each : run.list("structure.levels")) {
+  for (const tables::RunJson& each : run.list("structure.levels")) {
     table.add_row({++level, whole(each, "branches"), whole(each, "leaves"), whole(each, "empty_leaves"),
                    whole(each, "entries")});
   }
   return table;
 }
 
-Table level_memory_table(const RunJson& run) {
-  Table table("run_level_memory", "Memory by level of the tree",
-              {{"level", ColumnType::integer, "1", "from 1, the root"},
-               {"node_bytes", ColumnType::integer, "byte", "node records"},
-               {"list_bytes", ColumnType::integer, "byte", "object lists"}});
+tables::Table level_memory_table(const tables::RunJson& run) {
+  tables::Table table("run_level_memory", "Memory by level of the tree",
+                      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
+                       {"node_bytes", tables::ColumnType::integer, "byte", "node records"},
+                       {"list_bytes", tables::ColumnType::integer, "byte", "object lists"}});
   const std::int64_t node = size_of(run, "layout.node");
   const std::int64_t entry = size_of(run, "layout.entry");
   std::int64_t level = 0;
-  for (const RunJson& each : run.list("structure.levels")) {
+  for (const tables::RunJson& each : run.list("structure.levels")) {
     table.add_row({++level, times(node, plus(whole(each, "branches"), whole(each, "leaves"))),
                    times(entry, whole(each, "entries"))});
   }
@@ -151,11 +152,12 @@ Table level_memory_table(const RunJson& run) {
 }
 
 // Records by their sizes; what alignment adds is the rest.
-Table memory_table(const RunJson& run) {
-  Table table("run_memory", "Memory by kind of record",
-              {{"record", ColumnType::text, "", "kind of record"},
-               {"records", ColumnType::integer, "1", "how many"},
-               {"bytes", ColumnType::integer, "byte", "records by their size, without alignment"}});
+tables::Table memory_table(const tables::RunJson& run) {
+  tables::Table table(
+      "run_memory", "Memory by kind of record",
+      {{"record", tables::ColumnType::text, "", "kind of record"},
+       {"records", tables::ColumnType::integer, "1", "how many"},
+       {"bytes", tables::ColumnType::integer, "byte", "records by their size, without alignment"}});
   const std::int64_t quadrics =
       plus(plus(whole(run, "figures.frame.spheres"), whole(run, "figures.frame.cylinders")),
            whole(run, "figures.frame.cones"));
@@ -173,12 +175,13 @@ Table memory_table(const RunJson& run) {
   return table;
 }
 
-Table visits_table(const RunJson& run) {
-  Table table("run_visits", "Visits by level of the tree",
-              {{"level", ColumnType::integer, "1", "from 1, the root"},
-               {"visits", ColumnType::integer, "1", "visits of rays to nodes of this level"}});
+tables::Table visits_table(const tables::RunJson& run) {
+  tables::Table table(
+      "run_visits", "Visits by level of the tree",
+      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
+       {"visits", tables::ColumnType::integer, "1", "visits of rays to nodes of this level"}});
   std::int64_t level = 0;
-  for (const RunJson& each : run.list("machine.build.levels")) {
+  for (const tables::RunJson& each : run.list("machine.build.levels")) {
     table.add_row({++level, whole(each, "visits")});
   }
   return table;
@@ -189,24 +192,25 @@ struct LevelReferences {
   std::int64_t misses = 0;
 };
 
-void add_levels(const RunJson& run, ReportData& report) {
+void add_levels(const tables::RunJson& run, ReportData& report) {
   std::map<std::pair<std::int64_t, std::string>, LevelReferences> levels;
-  for (const RunJson& each : run.list("machine.counts.attribution")) {
+  for (const tables::RunJson& each : run.list("machine.counts.attribution")) {
     if (const std::int64_t level = whole(each, "level"); level > 0) {
       LevelReferences& sum = levels[{level, each.text("record")}];
       sum.references = plus(sum.references, whole(each, "references"));
       sum.misses = plus(sum.misses, whole(each, "misses"));
     }
   }
-  Table accesses("run_level_accesses", "Accesses by level of the tree",
-                 {{"level", ColumnType::integer, "1", "from 1, the root"},
-                  {"record", ColumnType::text, "", "kind of record"},
-                  {"references", ColumnType::integer, "1", "references of the first level of caches"},
-                  {"misses", ColumnType::integer, "1", "of these, misses"}});
-  Table ratios("run_level_hit_ratio", "Hit ratio by level of the tree",
-               {{"level", ColumnType::integer, "1", "from 1, the root"},
-                {"record", ColumnType::text, "", "kind of record"},
-                {"hit_ratio", ColumnType::real, "fraction", "hits by references"}});
+  tables::Table accesses(
+      "run_level_accesses", "Accesses by level of the tree",
+      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
+       {"record", tables::ColumnType::text, "", "kind of record"},
+       {"references", tables::ColumnType::integer, "1", "references of the first level of caches"},
+       {"misses", tables::ColumnType::integer, "1", "of these, misses"}});
+  tables::Table ratios("run_level_hit_ratio", "Hit ratio by level of the tree",
+                       {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
+                        {"record", tables::ColumnType::text, "", "kind of record"},
+                        {"hit_ratio", tables::ColumnType::real, "fraction", "hits by references"}});
   for (const auto& [place, sum] : levels) {
     accesses.add_row({place.first, place.second, sum.references, sum.misses});
     if (sum.references > 0) {
@@ -220,7 +224,7 @@ void add_levels(const RunJson& run, ReportData& report) {
 
 using Histogram = std::map<std::int64_t, std::int64_t>;  // highest of a bucket, count
 
-void add_histogram(const RunJson& waits, Histogram& histogram) {
+void add_histogram(const tables::RunJson& waits, Histogram& histogram) {
   const Json& buckets = waits.find("histogram_ps");
   if (!buckets.is_array()) {
     return;
@@ -234,17 +238,17 @@ void add_histogram(const RunJson& waits, Histogram& histogram) {
   }
 }
 
-Table waits_table(const RunJson& run) {
-  Table table("run_waits", "Waits",
-              {{"what", ColumnType::text, "", "what is waited for"},
-               {"highest_ps", ColumnType::integer, "ps", "upper end of a bucket"},
-               {"count", ColumnType::integer, "1", "waits in it"},
-               {"share", ColumnType::real, "fraction", "of the waits that are not longer"}});
+tables::Table waits_table(const tables::RunJson& run) {
+  tables::Table table("run_waits", "Waits",
+                      {{"what", tables::ColumnType::text, "", "what is waited for"},
+                       {"highest_ps", tables::ColumnType::integer, "ps", "upper end of a bucket"},
+                       {"count", tables::ColumnType::integer, "1", "waits in it"},
+                       {"share", tables::ColumnType::real, "fraction", "of the waits that are not longer"}});
   std::map<std::string, Histogram> histograms;
-  for (const RunJson& cluster : run.list("machine.per_cluster")) {
+  for (const tables::RunJson& cluster : run.list("machine.per_cluster")) {
     add_histogram({cluster.find("interconnect.waits"), run.file()}, histograms["interconnect"]);
     add_histogram({cluster.find("distributed.network.waits"), run.file()}, histograms["network"]);
-    for (const RunJson& bank : cluster.list("banks")) {
+    for (const tables::RunJson& bank : cluster.list("banks")) {
       add_histogram({bank.find("waits"), run.file()}, histograms["bank"]);
     }
   }
@@ -262,16 +266,17 @@ Table waits_table(const RunJson& run) {
   return table;
 }
 
-Table nodes_table(const RunJson& run) {
-  Table table("run_nodes", "What each node does",
-              {{"node", ColumnType::integer, "1", "its number"},
-               {"compute", ColumnType::real, "fraction", "of the frame: computing, cache accesses, messages"},
-               {"memory", ColumnType::real, "fraction", "transfers and bank accesses without queues"},
-               {"waits", ColumnType::real, "fraction", "waiting for anything"},
-               {"idle", ColumnType::real, "fraction", "nothing left to do"}});
+tables::Table nodes_table(const tables::RunJson& run) {
+  tables::Table table(
+      "run_nodes", "What each node does",
+      {{"node", tables::ColumnType::integer, "1", "its number"},
+       {"compute", tables::ColumnType::real, "fraction", "of the frame: computing, cache accesses, messages"},
+       {"memory", tables::ColumnType::real, "fraction", "transfers and bank accesses without queues"},
+       {"waits", tables::ColumnType::real, "fraction", "waiting for anything"},
+       {"idle", tables::ColumnType::real, "fraction", "nothing left to do"}});
   const double end = run.count("figures.machine.end");
   std::int64_t number = 0;
-  for (const RunJson& node : run.list("machine.per_node")) {
+  for (const tables::RunJson& node : run.list("machine.per_node")) {
     const auto share = [&](std::initializer_list<const char*> activities) {
       double sum = 0.0;
       for (const char* activity : activities) {
@@ -291,16 +296,16 @@ Table nodes_table(const RunJson& run) {
 }
 
 // Of many nodes: groups of neighbours, with the mean, the least and the most of each part.
-Table envelope_of(const Table& nodes, std::size_t groups) {
-  Table table(nodes.name(), nodes.title(),
-              {{"node", ColumnType::integer, "1", "first of the group"},
-               {"last", ColumnType::integer, "1", "last of the group"},
-               {"what", ColumnType::text, "", "part of the frame"},
-               {"mean", ColumnType::real, "fraction", "of the group's nodes"},
-               {"least", ColumnType::real, "fraction", "of any of them"},
-               {"most", ColumnType::real, "fraction", "of any of them"}});
+tables::Table envelope_of(const tables::Table& nodes, std::size_t groups) {
+  tables::Table table(nodes.name(), nodes.title(),
+                      {{"node", tables::ColumnType::integer, "1", "first of the group"},
+                       {"last", tables::ColumnType::integer, "1", "last of the group"},
+                       {"what", tables::ColumnType::text, "", "part of the frame"},
+                       {"mean", tables::ColumnType::real, "fraction", "of the group's nodes"},
+                       {"least", tables::ColumnType::real, "fraction", "of any of them"},
+                       {"most", tables::ColumnType::real, "fraction", "of any of them"}});
   const std::size_t count = nodes.rows().size();
-  for (const Column& column : nodes.columns().subspan(1)) {
+  for (const tables::Column& column : nodes.columns().subspan(1)) {
     for (std::size_t group = 0; group < groups; ++group) {
       const std::size_t first = group * count / groups;
       const std::size_t end = (group + 1) * count / groups;
@@ -325,7 +330,7 @@ Table envelope_of(const Table& nodes, std::size_t groups) {
 // More bars than this are narrower than a reader can tell apart.
 constexpr std::size_t most_bars = 64;
 
-void add_nodes(const Table& nodes, ReportData& report) {
+void add_nodes(const tables::Table& nodes, ReportData& report) {
   if (nodes.rows().size() <= most_bars) {
     add(report, nodes, "Uneven bars are imbalance.");
     return;
@@ -337,7 +342,7 @@ void add_nodes(const Table& nodes, ReportData& report) {
                              nodes.rows().size(), most_bars)));
 }
 
-void add_all(const RunJson& run, ReportData& report) {
+void add_all(const tables::RunJson& run, ReportData& report) {
   add(report, cycles_table(run), "All nodes' time from 0 to the end of the frame, without remainder.");
   add(report, loss_table(run),
       "The parts add up to the number of nodes less the speed-up times the nodes of the base.");
@@ -354,14 +359,14 @@ void add_all(const RunJson& run, ReportData& report) {
 
 }  // namespace
 
-std::int64_t whole(const RunJson& part, std::string_view path) {
+std::int64_t whole(const tables::RunJson& part, std::string_view path) {
   const Json& value = part.find(path);
   return value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)
              ? std::max<std::int64_t>(value.get<std::int64_t>(), 0)
              : 0;
 }
 
-void add_run_charts(const RunJson& run, ReportData& report) {
+void add_run_charts(const tables::RunJson& run, ReportData& report) {
   try {
     add_all(run, report);
   } catch (const std::overflow_error& error) {
@@ -369,4 +374,4 @@ void add_run_charts(const RunJson& run, ReportData& report) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -10,7 +10,7 @@
 #include "studies/figures/best_offer.h"
 #include "studies/report/model/answer_text.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -116,7 +116,7 @@ std::string speed_text(const ReportPoint& point) {
 
 // Of the points of this frame that have the figure, those that no other beats in it and in frame time.
 std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view figure, std::size_t frame) {
-  std::vector<Offer> offers;
+  std::vector<figures::Offer> offers;
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     const ReportPoint& point = sweep.points[i];
@@ -125,7 +125,7 @@ std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view fi
       offered.push_back(i);
     }
   }
-  std::vector<std::size_t> front = pareto_front(offers, Better::lower);
+  std::vector<std::size_t> front = figures::pareto_front(offers, figures::Better::lower);
   for (std::size_t& i : front) {
     i = offered[i];
   }
@@ -217,4 +217,4 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
   return answer;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -9,7 +9,7 @@
 
 #include "studies/report/model/report_points.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Indices into ReportPoints::points.
 struct Chosen {
@@ -33,4 +33,4 @@ struct Chosen {
 
 [[nodiscard]] std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chosen);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -12,7 +12,7 @@
 #include "studies/report/model/rounded.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -135,10 +135,10 @@ std::string error_note(const AxisModel* model) {
 }
 
 PointCounters counters_of(const ReportPoint& point, double x) {
-  using processors::Activity;
+  using processors::cost::Activity;
   const auto sum = [&](std::initializer_list<Activity> activities) {
     return std::accumulate(activities.begin(), activities.end(), 0.0, [&](double all, Activity activity) {
-      const std::string name(processors::activity_names[static_cast<std::size_t>(activity)]);
+      const std::string name(processors::cost::activity_names[static_cast<std::size_t>(activity)]);
       return all + point.figure("time_" + name);
     });
   };
@@ -167,7 +167,7 @@ PointCounters counters_of(const ReportPoint& point, double x) {
 }
 
 std::vector<AxisModel> model_sweep(const ReportPoints& sweep, std::size_t most_samples) {
-  const sim::Schema& schema = sweep_schema();
+  const sim::Schema& schema = sweep::sweep_schema();
   std::vector<AxisModel> models;
   std::size_t samples = 0;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -212,4 +212,4 @@ std::vector<AxisModel> model_sweep(const ReportPoints& sweep, std::size_t most_s
   return models;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -12,7 +12,7 @@
 #include "studies/report/model/line_model.h"
 #include "studies/report/model/report_points.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Samples of the model along a line; std::nullopt where it does not reach.
 struct ModelCurve {
@@ -43,4 +43,4 @@ struct AxisModel {
 [[nodiscard]] std::vector<AxisModel> model_sweep(const ReportPoints& sweep,
                                                  std::size_t most_samples = 60'000);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

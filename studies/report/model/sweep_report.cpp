@@ -16,7 +16,7 @@
 #include "studies/report/model/sweep_model.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -159,32 +159,36 @@ void add_front(const ReportPoints& sweep, const std::string& figure, const std::
   report.charts.push_back(std::move(chart));
 }
 
-Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
-  Table table("front", "Machines that no other beats in price and frame time",
-              {{"ordinal", ColumnType::integer, "1", "number of the point in the sweep, from 0"},
-               {"machine", ColumnType::text, "", "its values"},
-               {"price", ColumnType::real, "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
-               {"frame_time", ColumnType::real, "ms", "from its start until the last node is done"},
-               {"speed_up", ColumnType::real, "1", "over the base machine"},
-               {"efficiency", ColumnType::real, "fraction", "speed-up by the number of nodes"},
-               {"limit", ColumnType::text, "", "what would help it, predicted (docs/sweep.md)"}});
+tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
+  tables::Table table(
+      "front", "Machines that no other beats in price and frame time",
+      {{"ordinal", tables::ColumnType::integer, "1", "number of the point in the sweep, from 0"},
+       {"machine", tables::ColumnType::text, "", "its values"},
+       {"price", tables::ColumnType::real, "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
+       {"frame_time", tables::ColumnType::real, "ms", "from its start until the last node is done"},
+       {"speed_up", tables::ColumnType::real, "1", "over the base machine"},
+       {"efficiency", tables::ColumnType::real, "fraction", "speed-up by the number of nodes"},
+       {"limit", tables::ColumnType::text, "", "what would help it, predicted (docs/sweep.md)"}});
   for (const std::size_t i : chosen.front) {
     const ReportPoint& point = sweep.points[i];
-    const auto cell = [&](const char* name) { return point.has(name) ? Cell(point.figure(name)) : Cell(); };
+    const auto cell = [&](const char* name) {
+      return point.has(name) ? tables::Cell(point.figure(name)) : tables::Cell();
+    };
     table.add_row({point.ordinal, place_text(sweep, point), point.figure("price"), point.figure("end") * 1e-9,
                    cell("speed_up"), cell("efficiency"), point.limit});
   }
   return table;
 }
 
-Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
-  Table table("model_error", "Error of the analytic model, measured by leaving exact points out",
-              {{"axis", ColumnType::text, "", "key that the curve runs along"},
-               {"figure", ColumnType::text, "", "what is modelled"},
-               {"zone", ColumnType::text, "", "between exact points, or one step beyond them"},
-               {"points", ColumnType::integer, "1", "points that were left out once"},
-               {"mean", ColumnType::real, "fraction", "mean error"},
-               {"p95", ColumnType::real, "fraction", "95th percentile, the band that is shown"}});
+tables::Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
+  tables::Table table(
+      "model_error", "Error of the analytic model, measured by leaving exact points out",
+      {{"axis", tables::ColumnType::text, "", "key that the curve runs along"},
+       {"figure", tables::ColumnType::text, "", "what is modelled"},
+       {"zone", tables::ColumnType::text, "", "between exact points, or one step beyond them"},
+       {"points", tables::ColumnType::integer, "1", "points that were left out once"},
+       {"mean", tables::ColumnType::real, "fraction", "mean error"},
+       {"p95", tables::ColumnType::real, "fraction", "95th percentile, the band that is shown"}});
   for (const AxisModel& model : models) {
     for (const Zone zone : {Zone::between, Zone::beyond}) {
       for (const auto& [figure, errors] :
@@ -192,8 +196,9 @@ Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) 
         const ModelError& error = errors[static_cast<std::size_t>(zone)];
         table.add_row({sweep.axes[model.axis].name, std::string(figure),
                        std::string(zone == Zone::between ? "between" : "beyond"),
-                       static_cast<std::int64_t>(error.points), error.points > 0 ? Cell(error.mean) : Cell(),
-                       error.points > 0 ? Cell(error.p95) : Cell()});
+                       static_cast<std::int64_t>(error.points),
+                       error.points > 0 ? tables::Cell(error.mean) : tables::Cell(),
+                       error.points > 0 ? tables::Cell(error.p95) : tables::Cell()});
       }
     }
   }
@@ -206,7 +211,7 @@ std::string about_sweep(const ReportPoints& sweep) {
   const std::map<std::string, std::string> shared(sweep.settings.begin(), sweep.settings.end());
   std::string text;
   if (const auto scene = shared.find("scene.source"); scene != shared.end()) {
-    text += plain_setting(scene->second);
+    text += keys::plain_setting(scene->second);
   }
   if (shared.contains("image.width") && shared.contains("image.height")) {
     text += fmt::format("{}{} x {} pixels", text.empty() ? "" : ", ", shared.at("image.width"),
@@ -243,7 +248,7 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   const std::optional<std::size_t> axis = first_axis(sweep);
   ReportData report;
   report.kind = "sweep";
-  report.title = "Sweep of " + counted(sweep.points.size(), "machine");
+  report.title = "Sweep of " + tables::counted(sweep.points.size(), "machine");
   report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, models, chosen, axis);
@@ -294,4 +299,4 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   return report;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

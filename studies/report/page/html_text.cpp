@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::string script_json(const nlohmann::ordered_json& json) {
   return safe;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

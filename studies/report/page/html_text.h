@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// The text as the content of an element or of an attribute between double quotation marks. Control
 /// characters and bytes that are not UTF-8 become the replacement character.
@@ -15,4 +15,4 @@ namespace marti::studies {
 /// a comment.
 [[nodiscard]] std::string script_json(const nlohmann::ordered_json& json);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

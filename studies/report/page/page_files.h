@@ -5,7 +5,7 @@
 
 #include "studies/report/plots/vega_bundle.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 [[nodiscard]] std::string_view report_page_html();  ///< with {{names}} where something is put in
 [[nodiscard]] Script report_page_css();
@@ -23,4 +23,4 @@ namespace marti::studies {
 [[nodiscard]] Script report_numbers_js();
 [[nodiscard]] Script report_main_js();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

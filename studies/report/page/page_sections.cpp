@@ -10,7 +10,7 @@
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -22,7 +22,7 @@ struct ShownColumn {
   bool sizes = false;
 };
 
-ShownColumn shown_as(const Column& column) {
+ShownColumn shown_as(const tables::Column& column) {
   if (column.unit == "ps") {
     return {"ms", 1e9};
   }
@@ -35,27 +35,29 @@ ShownColumn shown_as(const Column& column) {
   return {column.unit == "1" ? "" : column.unit};
 }
 
-std::string cell_text(const Cell& cell, const ShownColumn& how) {
-  const std::optional<double> number = number_of(cell);
+std::string cell_text(const tables::Cell& cell, const ShownColumn& how) {
+  const std::optional<double> number = tables::number_of(cell);
   if (number && how.sizes) {
     const auto* whole = std::get_if<std::int64_t>(&cell);
-    return whole != nullptr && *whole >= 0 && *whole % 1024 == 0 ? sim::print_size(*whole) : bytes(*number);
+    return whole != nullptr && *whole >= 0 && *whole % 1024 == 0 ? sim::print_size(*whole)
+                                                                 : tables::bytes(*number);
   }
-  return number && how.divisor != 1.0 ? short_text(*number / how.divisor, "") : short_text(cell, "");
+  return number && how.divisor != 1.0 ? tables::short_text(*number / how.divisor, "")
+                                      : tables::short_text(cell, "");
 }
 
-SortedTable sorted_table(const Table& table) {
+SortedTable sorted_table(const tables::Table& table) {
   SortedTable made{table.title(), {}, {}};
   std::vector<ShownColumn> shown;
-  for (const Column& column : table.columns()) {
+  for (const tables::Column& column : table.columns()) {
     const std::string& unit = shown.emplace_back(shown_as(column)).unit;
     made.columns.push_back({words(column.name) + (unit.empty() ? "" : ", " + unit),
-                            column.type != ColumnType::text, column.description});
+                            column.type != tables::ColumnType::text, column.description});
   }
-  for (const std::vector<Cell>& row : table.rows()) {
+  for (const std::vector<tables::Cell>& row : table.rows()) {
     std::vector<SortedCell>& cells = made.rows.emplace_back();
     for (std::size_t i = 0; i < row.size(); ++i) {
-      cells.push_back({cell_text(row[i], shown[i]), number_of(row[i])});
+      cells.push_back({cell_text(row[i], shown[i]), tables::number_of(row[i])});
     }
   }
   return made;
@@ -134,8 +136,9 @@ std::string images_html(const ReportData& report) {
 std::string tables_html(const ReportData& report) {
   std::string html;
   for (const ReportTable& table : report.tables) {
-    html += folded(fmt::format("{} ({})", table.table.title(), counted(table.table.rows().size(), "row")),
-                   sorted_table_html(sorted_table(table.table)), !table.folded);
+    html +=
+        folded(fmt::format("{} ({})", table.table.title(), tables::counted(table.table.rows().size(), "row")),
+               sorted_table_html(sorted_table(table.table)), !table.folded);
   }
   return html;
 }
@@ -189,4 +192,4 @@ std::vector<PageSection> page_sections(const ReportData& report) {
   return sections;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -6,7 +6,7 @@
 
 #include "studies/report/model/report_data.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct PageSection {
   std::string id;     ///< of the element
@@ -20,4 +20,4 @@ struct PageSection {
 /// In the order of the page; parts for which the report has no data are left out.
 [[nodiscard]] std::vector<PageSection> page_sections(const ReportData& report);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -9,7 +9,7 @@
 #include "studies/report/page/page_sections.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::string report_page(const ReportData& report, std::span<const PageSection> p
                {"scripts", script_elements}});
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

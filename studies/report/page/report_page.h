@@ -8,7 +8,7 @@
 #include "studies/report/page/page_sections.h"
 #include "studies/report/plots/vega_bundle.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Texts of the report are escaped wherever they stand. The page's content security policy allows what is in
 /// it and nothing else: scripts and style by their SHA-256, images as data: addresses. Equal data give equal
@@ -19,4 +19,4 @@ namespace marti::studies {
 [[nodiscard]] std::string report_page(const ReportData& report, std::span<const PageSection> parts,
                                       std::span<const Script> scripts);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

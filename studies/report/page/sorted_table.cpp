@@ -4,7 +4,7 @@
 
 #include "studies/report/page/html_text.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 std::string sorted_table_html(const SortedTable& table) {
   std::string html = "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"" +
@@ -26,4 +26,4 @@ std::string sorted_table_html(const SortedTable& table) {
   return html + "</tbody></table></div>\n";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

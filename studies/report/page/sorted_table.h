@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct SortedColumn {
   std::string name;
@@ -28,4 +28,4 @@ struct SortedTable {
 /// All texts are escaped.
 [[nodiscard]] std::string sorted_table_html(const SortedTable& table);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -17,7 +17,7 @@
 #include "sim/error.h"
 #include "studies/host/signals_held.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -137,7 +137,7 @@ std::string run_child(const ChildProcess& child, std::string_view input, std::si
   const Clock::time_point end = Clock::now() + child.limit;
   const std::array<MemoryFile, 3> files{MemoryFile(input), MemoryFile(), MemoryFile()};
   const pid_t process = start(child, files);
-  const AtSignal kill_child_at_signal([process](int /*signal*/) { ::kill(process, SIGKILL); });
+  const host::AtSignal kill_child_at_signal([process](int /*signal*/) { ::kill(process, SIGKILL); });
   int status = 0;
   std::string fault;
   for (;;) {
@@ -172,4 +172,4 @@ std::string run_child(const ChildProcess& child, std::string_view input, std::si
   return files[1].content();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct ChildProcess {
   std::vector<std::string> command;      ///< the program, found by PATH, and its arguments
@@ -21,4 +21,4 @@ struct ChildProcess {
 /// more than `most` bytes.
 std::string run_child(const ChildProcess& child, std::string_view input, std::size_t most = 256U << 20U);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -12,7 +12,7 @@
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/tables/csv.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 // The text of studies/report/plots/draw.js, embedded by cmake/embed_text.cmake.
 std::string_view draw_script();
@@ -105,8 +105,9 @@ std::vector<Plot> draw_plots(const ReportData& report, const fs::path& directory
     const ReportChart& chart = report.charts[i];
     const auto svg = drawings[i]["svg"].get<std::string>();
     plots.push_back({chart.name + ".svg", svg});
-    plots.push_back({chart.name + ".csv",
-                     csv_of_rows(chart.live.is_null() ? chart.spec["data"]["values"] : drawings[i]["rows"])});
+    plots.push_back(
+        {chart.name + ".csv",
+         tables::csv_of_rows(chart.live.is_null() ? chart.spec["data"]["values"] : drawings[i]["rows"])});
     if (pdf) {
       plots.push_back({chart.name + ".pdf", pdf_of(svg)});
     }
@@ -114,4 +115,4 @@ std::vector<Plot> draw_plots(const ReportData& report, const fs::path& directory
   return plots;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

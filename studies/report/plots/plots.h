@@ -7,7 +7,7 @@
 
 #include "studies/report/model/report_data.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// A file that is still to be written.
 struct Plot {
@@ -22,4 +22,4 @@ struct Plot {
 [[nodiscard]] std::vector<Plot> draw_plots(const ReportData& report, const std::filesystem::path& directory,
                                            bool pdf);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

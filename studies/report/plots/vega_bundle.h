@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// A script or a style of a page. The build works out its hash, by which the page's policy names it, and sees
 /// to it that the text can stand in a page: it holds no "</script" and no "<!--".
@@ -34,4 +34,4 @@ inline constexpr const char* no_vega_scripts =
 [[nodiscard]] Script report_explorer_rows_js();   ///< rows of the charts that follow the explorer
 [[nodiscard]] Script report_explorer_specs_js();  ///< their specifications
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -4,33 +4,34 @@
 
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
 // Numbers before texts; what has no value last. Texts keep their order.
-bool before(const Cell& a, const Cell& b) {
-  const auto number_a = number_of(a);
-  const auto number_b = number_of(b);
+bool before(const tables::Cell& a, const tables::Cell& b) {
+  const auto number_a = tables::number_of(a);
+  const auto number_b = tables::number_of(b);
   if (number_a && number_b) {
     return *number_a < *number_b;
   }
-  const auto rank = [](const Cell& cell) {
-    return number_of(cell) ? 0 : std::holds_alternative<std::string>(cell) ? 1 : 2;
+  const auto rank = [](const tables::Cell& cell) {
+    return tables::number_of(cell) ? 0 : std::holds_alternative<std::string>(cell) ? 1 : 2;
   };
   return rank(a) < rank(b);
 }
 
-AxisColumn column_of(const std::string& name, std::size_t at, std::span<const std::vector<Cell>> points) {
+AxisColumn column_of(const std::string& name, std::size_t at,
+                     std::span<const std::vector<tables::Cell>> points) {
   AxisColumn column;
   column.name = name;
-  for (const std::vector<Cell>& point : points) {
+  for (const std::vector<tables::Cell>& point : points) {
     if (std::find(column.values.begin(), column.values.end(), point[at]) == column.values.end()) {
       column.values.push_back(point[at]);
     }
   }
   std::stable_sort(column.values.begin(), column.values.end(), before);
-  for (const std::vector<Cell>& point : points) {
+  for (const std::vector<tables::Cell>& point : points) {
     const auto found = std::find(column.values.begin(), column.values.end(), point[at]);
     column.index.push_back(static_cast<std::size_t>(found - column.values.begin()));
   }
@@ -52,7 +53,7 @@ bool follows(const AxisColumn& column, const AxisColumn& leader) {
 }  // namespace
 
 std::vector<AxisColumn> order_axes(std::span<const std::string> names,
-                                   std::span<const std::vector<Cell>> points) {
+                                   std::span<const std::vector<tables::Cell>> points) {
   std::vector<AxisColumn> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     AxisColumn column = column_of(names[i], i, points);
@@ -80,4 +81,4 @@ std::vector<AxisColumn> order_axes(std::span<const std::string> names,
   return axes;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

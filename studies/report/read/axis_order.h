@@ -8,12 +8,12 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 struct AxisColumn {
   std::string name;
   std::vector<std::string> followers;  ///< names whose value is always the same for a value of this one
-  std::vector<Cell> values;            ///< different ones: numbers ascending, then texts as they first occur
+  std::vector<tables::Cell> values;    ///< different ones: numbers ascending, then texts as they first occur
   std::vector<std::size_t> index;      ///< of each point's value among them
 };
 
@@ -21,6 +21,6 @@ struct AxisColumn {
 /// follower of that one; of two that determine each other the earlier leads. Names with a single value are
 /// not axes.
 [[nodiscard]] std::vector<AxisColumn> order_axes(std::span<const std::string> names,
-                                                 std::span<const std::vector<Cell>> points);
+                                                 std::span<const std::vector<tables::Cell>> points);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -16,7 +16,7 @@
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -59,9 +59,9 @@ constexpr std::string_view counters[] = {"end",
 
 constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
 
-std::vector<std::string> wanted_figures(const SweepReader& reader) {
+std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
   std::set<std::string, std::less<>> wanted(std::begin(counters), std::end(counters));
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     wanted.insert("time_" + std::string(activity));
     wanted.insert("share_" + std::string(activity));
   }
@@ -80,21 +80,21 @@ std::vector<std::string> wanted_figures(const SweepReader& reader) {
                   store.string(), ordinal, what));
 }
 
-std::string shown(const Cell& cell) {
+std::string shown(const tables::Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
     constexpr std::size_t longest = 40;
     return "\"" + text->substr(0, longest) + "\"";
   }
-  const std::optional<double> number = number_of(cell);
+  const std::optional<double> number = tables::number_of(cell);
   return number ? fmt::format("{:g}", *number) : "missing";
 }
 
 // Refuses a point with figures outside the range in which the page and its model can calculate.
-void check_point(const std::filesystem::path& store, const StoredPoint& point,
+void check_point(const std::filesystem::path& store, const sweep::StoredPoint& point,
                  std::span<const std::string> axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const Cell& value = point.values[i];
-    const std::optional<double> number = number_of(value);
+    const tables::Cell& value = point.values[i];
+    const std::optional<double> number = tables::number_of(value);
     if (std::holds_alternative<std::monostate>(value)) {
       refuse(store, point.ordinal, "its value of axis " + axes[i] + " is missing");
     }
@@ -106,13 +106,13 @@ void check_point(const std::filesystem::path& store, const StoredPoint& point,
 }
 
 void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std::string_view name,
-                  const Cell& cell) {
+                  const tables::Cell& cell) {
   const bool needed = name == "end" || name == "cost" || name == "nodes";
   if (std::holds_alternative<std::monostate>(cell) && !needed) {
     return;  // the machine has no such part
   }
   const double least = name == "end" || name == "nodes" ? 1.0 : 0.0;
-  const std::optional<double> number = number_of(cell);
+  const std::optional<double> number = tables::number_of(cell);
   const bool whole = name != "end" || std::holds_alternative<std::int64_t>(cell);
   if (!number || !whole || !(*number >= least && *number <= most)) {
     refuse(store, ordinal,
@@ -150,18 +150,18 @@ void add_groups(ReportPoint& point) {
 }
 
 // The upper bound of the bucket that the percentile lies in: waits are not above it.
-void add_percentiles(const SweepRow& row, ReportPoint& point) {
-  for (const SweepHistogram& histogram : row.histograms) {
+void add_percentiles(const sweep::SweepRow& row, ReportPoint& point) {
+  for (const sweep::SweepHistogram& histogram : row.histograms) {
     if (std::find(std::begin(waits), std::end(waits), histogram.what) == std::end(waits)) {
       continue;
     }
     double all = 0.0;
-    for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+    for (const sweep::SweepHistogram::Bucket& bucket : histogram.buckets) {
       all += static_cast<double>(bucket.count);
     }
     for (const int percent : {50, 95, 99}) {
       double below = 0.0;
-      for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+      for (const sweep::SweepHistogram::Bucket& bucket : histogram.buckets) {
         below += static_cast<double>(bucket.count);
         if (below >= all * percent / 100.0) {
           point.figures[fmt::format("{}_p{}", histogram.what, percent)] = static_cast<double>(bucket.highest);
@@ -176,11 +176,11 @@ void add_percentiles(const SweepRow& row, ReportPoint& point) {
 // machines can be compared.
 class Frames {
  public:
-  explicit Frames(const SweepReader& reader) : reader_(reader) {}
+  explicit Frames(const sweep::SweepReader& reader) : reader_(reader) {}
 
   [[nodiscard]] std::size_t number_of(std::int64_t machine) {
     std::string key;
-    if (const std::optional<FrameRow> frame = reader_.read_frame(machine)) {
+    if (const std::optional<sweep::FrameRow> frame = reader_.read_frame(machine)) {
       key = fmt::format("{} {} {}", frame->scene_hash, frame->image_hash, frame->hit_hash);
     }
     return numbers_.emplace(key, numbers_.size()).first->second;
@@ -188,13 +188,14 @@ class Frames {
   [[nodiscard]] std::size_t count() const { return numbers_.size(); }
 
  private:
-  const SweepReader& reader_;
+  const sweep::SweepReader& reader_;
   std::map<std::string, std::size_t> numbers_;
 };
 
 // A machine's settings by key: every machine has some.
-std::map<std::string, std::string> settings_of(const SweepReader& reader, const std::filesystem::path& store,
-                                               std::int64_t ordinal, std::int64_t machine) {
+std::map<std::string, std::string> settings_of(const sweep::SweepReader& reader,
+                                               const std::filesystem::path& store, std::int64_t ordinal,
+                                               std::int64_t machine) {
   const std::vector<std::pair<std::string, std::string>> settings = reader.settings(machine);
   if (settings.empty()) {
     refuse(store, ordinal, fmt::format("its machine {} is not in the store", machine));
@@ -240,23 +241,24 @@ ReportAxis make_axis(const AxisColumn& column) {
   axis.name = column.name;
   axis.followers = column.followers;
   axis.values = column.values;
-  axis.unit = axis_unit(column.name);
-  axis.numeric = !is_boolean_axis(column.name) &&
+  axis.unit = sweep::axis_unit(column.name);
+  axis.numeric = !sweep::is_boolean_axis(column.name) &&
                  std::all_of(axis.values.begin(), axis.values.end(),
-                             [](const Cell& cell) { return number_of(cell).has_value(); });
-  for (const Cell& value : axis.values) {
-    axis.texts.push_back(axis_text(column.name, value));
+                             [](const tables::Cell& cell) { return tables::number_of(cell).has_value(); });
+  for (const tables::Cell& value : axis.values) {
+    axis.texts.push_back(sweep::axis_text(column.name, value));
   }
   if (axis.numeric) {
     std::vector<double> numbers;
-    for (const Cell& value : axis.values) {
-      numbers.push_back(*number_of(value));
+    for (const tables::Cell& value : axis.values) {
+      numbers.push_back(*tables::number_of(value));
     }
     const std::size_t last = numbers.size() - 1;
     axis.logarithmic = numbers.front() > 0.0 &&
                        (last < 2 || numbers[last] - numbers[last - 1] > 1.5 * (numbers[1] - numbers[0]));
-    axis.integer = std::all_of(axis.values.begin(), axis.values.end(),
-                               [](const Cell& cell) { return std::holds_alternative<std::int64_t>(cell); });
+    axis.integer = std::all_of(axis.values.begin(), axis.values.end(), [](const tables::Cell& cell) {
+      return std::holds_alternative<std::int64_t>(cell);
+    });
   }
   return axis;
 }
@@ -264,14 +266,14 @@ ReportAxis make_axis(const AxisColumn& column) {
 }  // namespace
 
 ReportPoints read_report_points(const std::filesystem::path& store) {
-  const SweepReader reader(store);
+  const sweep::SweepReader reader(store);
   ReportPoints sweep;
   sweep.version = reader.version();
   const std::vector<std::string> names = wanted_figures(reader);
-  std::vector<std::vector<Cell>> values;
+  std::vector<std::vector<tables::Cell>> values;
   Settings settings;
   Frames frames(reader);
-  reader.for_each_point(names, [&](const StoredPoint& stored, std::span<const Cell> cells) {
+  reader.for_each_point(names, [&](const sweep::StoredPoint& stored, std::span<const tables::Cell> cells) {
     ++sweep.planned;
     const std::map<std::string, std::string> by_key =
         settings_of(reader, store, stored.ordinal, stored.machine);
@@ -292,7 +294,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     point.cost = stored.cost;
     for (std::size_t i = 0; i < names.size(); ++i) {
       check_figure(store, stored.ordinal, names[i], cells[i]);
-      if (const std::optional<double> number = number_of(cells[i])) {
+      if (const std::optional<double> number = tables::number_of(cells[i])) {
         point.figures[names[i]] = *number;
       }
     }
@@ -307,7 +309,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   }
   for (ReportPoint& point : sweep.points) {
     add_groups(point);
-    if (const std::optional<SweepRow> row = reader.read_result(point.machine)) {
+    if (const std::optional<sweep::SweepRow> row = reader.read_result(point.machine)) {
       add_percentiles(*row, point);
     }
     point.frame = frames.number_of(point.machine);
@@ -327,9 +329,9 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   for (ReportPoint& point : sweep.points) {
     point.figures["price"] = sweep.priced ? point.cost : point.figure("nodes");
   }
-  const StoredLimits limits(reader);
+  const limits::StoredLimits limits(reader);
   for (const std::size_t i : choose(sweep).front) {
-    if (const std::optional<PointLimit> limit = limits.at(sweep.points[i].ordinal)) {
+    if (const std::optional<limits::PointLimit> limit = limits.at(sweep.points[i].ordinal)) {
       sweep.points[i].limit = limit->sentence();
     }
   }
@@ -338,4 +340,4 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   return sweep;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

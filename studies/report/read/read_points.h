@@ -5,7 +5,7 @@
 
 #include "studies/report/model/report_points.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Figures of a point: the counters that reports use, what the store's view `summary` derives, and
 /// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50"
@@ -16,4 +16,4 @@ namespace marti::studies {
 /// timed point, more than a page can show, or a point that is not so, which it names by its ordinal.
 [[nodiscard]] ReportPoints read_report_points(const std::filesystem::path& store);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -8,7 +8,7 @@
 #include "studies/sweep/store/store_schema.h"
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -22,8 +22,8 @@ constexpr std::string_view expected =
 // Sweeps and studies both have a results.sqlite; its table `columns` differs. Other faults of the file are
 // reported by the code that reads it.
 bool is_study(const fs::path& file) {
-  (void)check_store_file(file);
-  SqliteConnection connection(file, SqliteConnection::Access::read);
+  (void)sweep::check_store_file(file);
+  tables::SqliteConnection connection(file, tables::SqliteConnection::Access::read);
   return connection.value<std::int64_t>(
              "SELECT count(*) FROM pragma_table_info('columns') WHERE name = 'table_name'") != 0;
 }
@@ -40,7 +40,7 @@ ReportData read_report(const fs::path& directory, std::optional<double> budget) 
   std::error_code error;
   const fs::file_status status = fs::status(directory, error);
   if (status.type() == fs::file_type::not_found) {
-    if (const std::optional<PointName> point = point_named(directory.string())) {
+    if (const std::optional<tables::PointName> point = tables::point_named(directory.string())) {
       refuse_budget();
       return read_point_report(*point);
     }
@@ -52,7 +52,7 @@ ReportData read_report(const fs::path& directory, std::optional<double> budget) 
   if (!fs::is_directory(status)) {
     throw sim::UserError(directory.string() + ": is no directory; " + std::string(expected));
   }
-  const fs::path file = results_in(directory, expected);
+  const fs::path file = tables::results_in(directory, expected);
   if (file.extension() == ".json") {
     refuse_budget();
     return read_run_report(directory);
@@ -64,4 +64,4 @@ ReportData read_report(const fs::path& directory, std::optional<double> budget) 
   return sweep_report(read_report_points(file), budget);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

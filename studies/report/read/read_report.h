@@ -8,7 +8,7 @@
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Reads the directory that `marti run -o`, `marti sweep -o` or `marti study ... -o` has written, or point N
 /// of a sweep ("DIR:N"). The same files give the same data. Throws UserError, naming the file and what to do,
@@ -25,12 +25,12 @@ namespace marti::studies {
 [[nodiscard]] ReportData read_run_report(const std::filesystem::path& directory);
 
 /// What the result of a run says, without the files beside it. Throws UserError when a field is missing.
-[[nodiscard]] ReportData report_of_run(const RunJson& run);
+[[nodiscard]] ReportData report_of_run(const tables::RunJson& run);
 
 /// A point of a sweep.
-[[nodiscard]] ReportData read_point_report(const PointName& point);
+[[nodiscard]] ReportData read_point_report(const tables::PointName& point);
 
 /// A directory of `marti study ... -o`: results.sqlite, and if they exist *.png and report.txt beside it.
 [[nodiscard]] ReportData read_study_report(const std::filesystem::path& directory);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -7,7 +7,7 @@
 #include "sim/files.h"
 #include "sim/units.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -97,4 +97,4 @@ Json read_chart_rows(const fs::path& file) {
   return chart[place];
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -9,7 +9,7 @@
 
 #include "studies/report/model/report_data.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 /// Paths of the files in `directory` whose names end in `ending`, by name. UserError when it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> files_ending_in(const std::filesystem::path& directory,
@@ -25,4 +25,4 @@ void take_image(const std::filesystem::path& file, const std::string& title, Rep
 /// numbers and texts each.
 [[nodiscard]] nlohmann::ordered_json read_chart_rows(const std::filesystem::path& file);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -19,14 +19,14 @@
 #include "studies/tables/run_files.h"
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-void add_configuration(const RunJson& run, ReportData& report) {
-  const std::map<std::string, std::string> settings = settings_of(run);
+void add_configuration(const tables::RunJson& run, ReportData& report) {
+  const std::map<std::string, std::string> settings = keys::settings_of(run);
   std::string defaults;
   for (const auto& [key, setting] : run.at("config.keys").items()) {
     (run.of(setting).boolean("given") ? report.configuration : defaults) +=
@@ -36,27 +36,29 @@ void add_configuration(const RunJson& run, ReportData& report) {
       "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
 }
 
-Table plan_table(const RunJson& run) {
-  Table table("plan", "The plan: what the run left out",
-              {{"item", ColumnType::text, "", "what could be left out"},
-               {"decision", ColumnType::text, "", "left out, needed, kept or not applicable"},
-               {"class", ColumnType::text, "", "proved before the frame, or decided ray by ray"},
-               {"fact", ColumnType::text, "", "what the decision rests on"},
-               {"saved_operations", ColumnType::integer, "1", "counted after the frame"},
-               {"unit", ColumnType::text, "", "of saved_operations"}});
+tables::Table plan_table(const tables::RunJson& run) {
+  tables::Table table(
+      "plan", "The plan: what the run left out",
+      {{"item", tables::ColumnType::text, "", "what could be left out"},
+       {"decision", tables::ColumnType::text, "", "left out, needed, kept or not applicable"},
+       {"class", tables::ColumnType::text, "", "proved before the frame, or decided ray by ray"},
+       {"fact", tables::ColumnType::text, "", "what the decision rests on"},
+       {"saved_operations", tables::ColumnType::integer, "1", "counted after the frame"},
+       {"unit", tables::ColumnType::text, "", "of saved_operations"}});
   for (const auto& [name, item] : run.at("plan").items()) {
-    const RunJson each = run.of(item);
+    const tables::RunJson each = run.of(item);
     const bool saved = each.find("counted.operations").is_number_integer();
     table.add_row({name, each.text("decision"), each.text("class"), each.text("fact"),
-                   saved ? Cell(whole(each, "counted.operations")) : Cell(), each.text("unit")});
+                   saved ? tables::Cell(whole(each, "counted.operations")) : tables::Cell(),
+                   each.text("unit")});
   }
   return table;
 }
 
-Table figures_table(const RunJson& run) {
-  Table table("figures", "Figures of the run",
-              {{"figure", ColumnType::text, "", "name in the catalogue (`marti figures`)"},
-               {"value", ColumnType::text, "", "times in ps"}});
+tables::Table figures_table(const tables::RunJson& run) {
+  tables::Table table("figures", "Figures of the run",
+                      {{"figure", tables::ColumnType::text, "", "name in the catalogue (`marti figures`)"},
+                       {"value", tables::ColumnType::text, "", "times in ps"}});
   for (const char* part : {"figures.frame", "figures.machine"}) {
     for (const auto& [name, value] : run.at(part).items()) {
       if (value.is_number() || value.is_string()) {
@@ -71,7 +73,7 @@ Table figures_table(const RunJson& run) {
 bool is_of_run(const fs::path& directory, const std::string& name,
                const std::map<std::string, std::string>& files, ReportData& report) {
   const auto named = files.find(name);
-  if (!is_there(directory / name)) {
+  if (!tables::is_there(directory / name)) {
     if (named == files.end()) {
       return false;
     }
@@ -94,7 +96,7 @@ bool is_of_run(const fs::path& directory, const std::string& name,
 }
 
 // What the brightest colour of a heat map stands for; empty for other images, and where the run does not say.
-std::string scale_text(const RunJson& run, const char* heat, const char* unit, const char* plural) {
+std::string scale_text(const tables::RunJson& run, const char* heat, const char* unit, const char* plural) {
   if (heat == nullptr) {
     return {};
   }
@@ -105,11 +107,11 @@ std::string scale_text(const RunJson& run, const char* heat, const char* unit, c
 
 // "image scheme, nodes at 100 MHz, caches of 16 KiB, bus": what tells a machine from others, as far as the
 // result says it.
-std::string about_machine(const RunJson& run) {
-  const std::map<std::string, std::string> settings = settings_of(run);
+std::string about_machine(const tables::RunJson& run) {
+  const std::map<std::string, std::string> settings = keys::settings_of(run);
   const auto setting = [&settings](const char* key) {
     const auto at = settings.find(key);
-    return at == settings.end() ? std::string() : plain_setting(at->second);
+    return at == settings.end() ? std::string() : keys::plain_setting(at->second);
   };
   std::string text;
   const auto add = [&](const std::string& value, const std::string& before, const std::string& after = {}) {
@@ -131,12 +133,13 @@ std::string about_machine(const RunJson& run) {
   return text;
 }
 
-void add_files(const fs::path& directory, const RunJson& run, ReportData& report) {
-  const std::map<std::string, std::string> files = files_of(run);
+void add_files(const fs::path& directory, const tables::RunJson& run, ReportData& report) {
+  const std::map<std::string, std::string> files = tables::files_of(run);
   if (const char* chart = "working_set.vl.json"; is_of_run(directory, chart, files, report)) {
     // Only its rows: how they are drawn is built into the program.
-    report.charts.push_back(chart_of_results(chart_named(chart_specifications(), "working_set"),
-                                             read_chart_rows(directory / chart)));
+    report.charts.push_back(
+        chart_of_results(tables::chart_named(tables::chart_specifications(), "working_set"),
+                         read_chart_rows(directory / chart)));
   }
   struct Image {
     const char* name;
@@ -159,7 +162,7 @@ void add_files(const fs::path& directory, const RunJson& run, ReportData& report
 }
 
 // What a run and a point of a sweep have both.
-ReportData machine_report(const RunJson& run, const std::string& base) {
+ReportData machine_report(const tables::RunJson& run, const std::string& base) {
   ReportData report;
   report.kind = "run";
   report.about = about_machine(run);
@@ -176,7 +179,7 @@ ReportData machine_report(const RunJson& run, const std::string& base) {
 }  // namespace
 
 ReportData read_run_report(const fs::path& directory) {
-  const RunJson run = read_run_json(
+  const tables::RunJson run = tables::read_run_json(
       directory / "result.json",
       {"config.keys", "figures.frame", "figures.machine", "scene", "structure", "plan", "machine"});
   ReportData report = report_of_run(run);
@@ -184,11 +187,11 @@ ReportData read_run_report(const fs::path& directory) {
   return report;
 }
 
-ReportData report_of_run(const RunJson& run) {
+ReportData report_of_run(const tables::RunJson& run) {
   ReportData report = machine_report(run, "one node");
   report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
   add_path_chart(run, report);
-  if (Table helps = helps_table(run); !helps.rows().empty()) {
+  if (tables::Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});
   }
   report.tables.push_back({plan_table(run), true});
@@ -197,8 +200,8 @@ ReportData report_of_run(const RunJson& run) {
   return report;
 }
 
-ReportData read_point_report(const PointName& point) {
-  const RunJson run = point_result(SweepReader(point.store), point.ordinal, point.name);
+ReportData read_point_report(const tables::PointName& point) {
+  const tables::RunJson run = sweep::point_result(sweep::SweepReader(point.store), point.ordinal, point.name);
   ReportData report = machine_report(run, "its base machine");
   report.title = fmt::format("Point {} of a sweep: {} on {}", point.ordinal, run.text("figures.frame.scene"),
                              machine_text(run));
@@ -206,4 +209,4 @@ ReportData read_point_report(const PointName& point) {
   return report;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -19,7 +19,7 @@
 #include "studies/tables/sqlite_connection.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::report {
 
 namespace {
 
@@ -37,18 +37,18 @@ struct Described {
 // Unit and meaning by table and column.
 using Descriptions = std::map<std::pair<std::string, std::string>, Described>;
 
-Descriptions descriptions_of(SqliteConnection& connection) {
+Descriptions descriptions_of(tables::SqliteConnection& connection) {
   Descriptions found;
-  SqliteStatement rows(connection, "SELECT table_name, column_name, unit, description FROM columns");
+  tables::SqliteStatement rows(connection, "SELECT table_name, column_name, unit, description FROM columns");
   while (rows.next()) {
     found[{rows.text(0), rows.text(1)}] = {rows.text(2), rows.text(3)};
   }
   return found;
 }
 
-std::vector<std::string> tables_of(SqliteConnection& connection) {
+std::vector<std::string> tables_of(tables::SqliteConnection& connection) {
   std::vector<std::string> names;
-  SqliteStatement rows(
+  tables::SqliteStatement rows(
       connection, "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'columns' ORDER BY rowid");
   while (rows.next()) {
     names.push_back(rows.text(0));
@@ -56,10 +56,10 @@ std::vector<std::string> tables_of(SqliteConnection& connection) {
   return names;
 }
 
-ColumnType type_of(const std::string& declared) {
-  return declared == "INTEGER" ? ColumnType::integer
-         : declared == "REAL"  ? ColumnType::real
-                               : ColumnType::text;
+tables::ColumnType type_of(const std::string& declared) {
+  return declared == "INTEGER" ? tables::ColumnType::integer
+         : declared == "REAL"  ? tables::ColumnType::real
+                               : tables::ColumnType::text;
 }
 
 bool is_plain(const std::string& name) {
@@ -67,14 +67,14 @@ bool is_plain(const std::string& name) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
 }
 
-Table read_table(SqliteConnection& connection, const fs::path& file, const std::string& name,
-                 const Descriptions& descriptions, std::size_t& rows_left) {
-  std::vector<Column> columns;
+tables::Table read_table(tables::SqliteConnection& connection, const fs::path& file, const std::string& name,
+                         const Descriptions& descriptions, std::size_t& rows_left) {
+  std::vector<tables::Column> columns;
   std::set<std::string> seen;
-  SqliteStatement info(connection, "SELECT name, type FROM pragma_table_info(?)");
+  tables::SqliteStatement info(connection, "SELECT name, type FROM pragma_table_info(?)");
   info.with({name});
   while (info.next()) {
-    Column column{info.text(0), type_of(info.text(1)), "", ""};
+    tables::Column column{info.text(0), type_of(info.text(1)), "", ""};
     if (!is_plain(column.name) || !seen.insert(column.name).second) {
       throw sim::UserError(file.string() + ": table " + name + ": its columns are not those of a study" +
                            std::string(remedy));
@@ -88,8 +88,8 @@ Table read_table(SqliteConnection& connection, const fs::path& file, const std::
   if (columns.empty() || !is_plain(name)) {
     throw sim::UserError(file.string() + ": table " + name + " is not one of a study" + std::string(remedy));
   }
-  Table table(name, name, columns);
-  SqliteStatement rows(connection, "SELECT * FROM " + sql_name(name));
+  tables::Table table(name, name, columns);
+  tables::SqliteStatement rows(connection, "SELECT * FROM " + tables::sql_name(name));
   while (rows.next()) {
     if (rows_left == 0) {
       throw sim::UserError(
@@ -98,9 +98,9 @@ Table read_table(SqliteConnection& connection, const fs::path& file, const std::
                       file.string(), most_rows));
     }
     --rows_left;
-    std::vector<Cell> cells;
+    std::vector<tables::Cell> cells;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      cells.push_back(as_type(rows.cell(static_cast<int>(i)), columns[i].type));
+      cells.push_back(tables::as_type(rows.cell(static_cast<int>(i)), columns[i].type));
     }
     table.add_row(std::move(cells));
   }
@@ -108,8 +108,8 @@ Table read_table(SqliteConnection& connection, const fs::path& file, const std::
 }
 
 // "setting", "value" and "given", as studies/tables/provenance.h makes it.
-void take_settings(const Table& table, ReportData& report) {
-  for (const std::vector<Cell>& row : table.rows()) {
+void take_settings(const tables::Table& table, ReportData& report) {
+  for (const std::vector<tables::Cell>& row : table.rows()) {
     const auto text = [&](std::size_t i) {
       const auto* found = i < row.size() ? std::get_if<std::string>(&row[i]) : nullptr;
       return found == nullptr ? std::string() : *found;
@@ -148,7 +148,7 @@ void take_text(const fs::path& file, ReportData& report) {
 
 // What a study has found: how many of its claims (studies/tables/claim.h) or cases hold, then each that does
 // not hold, or not everywhere.
-void take_verdicts(const Table& table, ReportData& report) {
+void take_verdicts(const tables::Table& table, ReportData& report) {
   const bool claims = table.name() == "claims";
   const auto text = [&](std::size_t row, std::string_view column) {
     const auto* found = std::get_if<std::string>(&table.at(row, column));
@@ -172,11 +172,11 @@ void take_verdicts(const Table& table, ReportData& report) {
   report.answer.insert(report.answer.end(), others.begin(), others.end());
 }
 
-bool has_columns(const Table& table, std::span<const std::string_view> names) {
+bool has_columns(const tables::Table& table, std::span<const std::string_view> names) {
   return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
     const auto columns = table.columns();
     return std::any_of(columns.begin(), columns.end(),
-                       [&](const Column& column) { return column.name == name; });
+                       [&](const tables::Column& column) { return column.name == name; });
   });
 }
 
@@ -187,12 +187,12 @@ ReportData read_study_report(const fs::path& directory) {
   ReportData report;
   report.kind = "study";
   report.title = "Study";
-  SqliteConnection connection(file, SqliteConnection::Access::read);
+  tables::SqliteConnection connection(file, tables::SqliteConnection::Access::read);
   const Descriptions descriptions = descriptions_of(connection);
   std::size_t rows_left = most_rows;
-  std::vector<Table> tables;
+  std::vector<tables::Table> tables;
   for (const std::string& name : tables_of(connection)) {
-    Table table = read_table(connection, file, name, descriptions, rows_left);
+    tables::Table table = read_table(connection, file, name, descriptions, rows_left);
     if (name == "provenance") {
       take_settings(table, report);
       continue;
@@ -205,22 +205,22 @@ ReportData read_study_report(const fs::path& directory) {
     }
     tables.push_back(std::move(table));
   }
-  if (is_there(directory / "report.txt")) {
+  if (tables::is_there(directory / "report.txt")) {
     take_text(directory / "report.txt", report);
   }
-  for (const auto& [chart, table] : charts_of(tables)) {
-    report.charts.push_back(chart_of_results(*chart, rows_json(*table)));
+  for (const auto& [chart, table] : tables::charts_of(tables)) {
+    report.charts.push_back(chart_of_results(*chart, tables::rows_json(*table)));
   }
-  for (Table& table : tables) {
+  for (tables::Table& table : tables) {
     report.tables.push_back({std::move(table), true});
   }
   for (const fs::path& image : files_ending_in(directory, ".png")) {
     take_image(image, image.stem().string(), report);
   }
   report.answer.push_back(fmt::format("{} and {} below; the study's own report follows them.",
-                                      counted(report.tables.size(), "table"),
-                                      counted(report.charts.size(), "chart")));
+                                      tables::counted(report.tables.size(), "table"),
+                                      tables::counted(report.charts.size(), "chart")));
   return report;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::report

@@ -2,7 +2,7 @@
 #include "sim/error.h"
 #include "studies/run/plan/make_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -16,19 +16,21 @@ void check_unused(std::span<const std::uint64_t> shades, const SceneNeeds& needs
 }  // namespace
 
 void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene,
-                 const processors::Frame& frame, const processors::LogTotals& totals,
+                 const processors::program::Frame& frame, const processors::program::LogTotals& totals,
                  std::span<const std::uint64_t> shades) {
   check_unused(shades, needs);
   const auto& traced = frame.rays.traced;
-  const auto traced_of = [&](processors::RayKind kind) { return traced[static_cast<std::size_t>(kind)]; };
+  const auto traced_of = [&](processors::program::RayKind kind) {
+    return traced[static_cast<std::size_t>(kind)];
+  };
   sim::ensure(needs.shadow_rays || !is_left_out(plan, PlanItem::shadow_rays) ||
-                  traced_of(processors::RayKind::shadow) == 0,
+                  traced_of(processors::program::RayKind::shadow) == 0,
               "the plan left out all shadow rays, and one was sent");
-  sim::ensure(needs.reflection_rays || traced_of(processors::RayKind::reflection) == 0,
+  sim::ensure(needs.reflection_rays || traced_of(processors::program::RayKind::reflection) == 0,
               "the plan left out reflected rays, and one was sent");
-  sim::ensure(needs.refraction_rays || traced_of(processors::RayKind::refraction) == 0,
+  sim::ensure(needs.refraction_rays || traced_of(processors::program::RayKind::refraction) == 0,
               "the plan left out refracted rays, and one was sent");
-  sim::ensure(needs.diffuse_rays || traced_of(processors::RayKind::diffuse) == 0,
+  sim::ensure(needs.diffuse_rays || traced_of(processors::program::RayKind::diffuse) == 0,
               "the plan has no use for diffuse rays, and one was sent");
   for (PlanEntry& entry : plan.entries) {
     if (entry.decision != PlanDecision::left_out) {
@@ -40,7 +42,8 @@ void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene
         std::uint64_t asked = 0;
         for (std::size_t i = 0; i < scene.materials.size(); ++i) {
           const scenes::Material& material = scene.materials[i];
-          const bool unlit = processors::asks_lights(material) && !processors::shows_light(material);
+          const bool unlit =
+              processors::program::asks_lights(material) && !processors::program::shows_light(material);
           asked += unlit ? shades[i] * needs.shining_lights : 0;
         }
         counted.operations = static_cast<std::int64_t>(asked);
@@ -59,4 +62,4 @@ void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -11,12 +11,12 @@
 #include "sim/units.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
 // Records that the log's steps refer to; each is one reference at least.
-std::int64_t records_of(const processors::LogTotals& totals) {
+std::int64_t records_of(const processors::program::LogTotals& totals) {
   return static_cast<std::int64_t>(totals.branches + totals.leaves + totals.tests + totals.shades +
                                    totals.texels + totals.cuts + totals.passes);
 }
@@ -35,16 +35,16 @@ PlanEntry entry_of(PlanItem item, const char* why, const KeptItems& kept) {
 
 }  // namespace
 
-void keep(const KeptItems& kept, processors::ReplayOptions& options) {
+void keep(const KeptItems& kept, processors::replay::ReplayOptions& options) {
   options.keep_lookups = kept.has(PlanItem::cache);
   options.keep_read_events = kept.has(PlanItem::contention);
 }
 
-std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::MachineConfig& machine,
-                                    const processors::WorkLog& log, bool observed) {
-  const std::int64_t records = records_of(processors::totals_of(log));
+std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::machine::MachineConfig& machine,
+                                    const processors::program::WorkLog& log, bool observed) {
+  const std::int64_t records = records_of(processors::program::totals_of(log));
 
-  const char* waits = processors::why_read_events(machine);
+  const char* waits = processors::walk::why_read_events(machine);
   if (waits == nullptr && observed) {
     waits = "observers need every read";
   }
@@ -54,19 +54,19 @@ std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::Mac
     contention.fact = "over an ideal interconnect every read takes the same time and nothing waits";
     // Without a cache every reference is a read; with a cache only the run tells how many are.
     if (contention.decision == PlanDecision::left_out &&
-        machine.cache.organisation == processors::CacheOrganisation::none) {
+        machine.cache.organisation == processors::machine::CacheOrganisation::none) {
       contention.saved.operations = records;
     }
   }
 
-  std::optional<processors::TreePlan> given;
-  const memory::Layout layout = processors::layout_of(log, machine, given);
-  const char* const lookups = processors::why_lookups(machine, layout);
+  std::optional<processors::walk::TreePlan> given;
+  const memory::Layout layout = processors::walk::layout_of(log, machine, given);
+  const char* const lookups = processors::walk::why_lookups(machine, layout);
   PlanEntry cache = entry_of(PlanItem::cache, lookups, kept);
   cache.unit = "look-ups in tags";
   if (lookups == nullptr) {
-    const std::uint64_t lines = processors::lines_of(layout, machine.cache.cache.line);
-    cache.fact = "the database of " + bytes(static_cast<double>(layout.database_bytes())) +
+    const std::uint64_t lines = processors::walk::lines_of(layout, machine.cache.cache.line);
+    cache.fact = "the database of " + tables::bytes(static_cast<double>(layout.database_bytes())) +
                  " fits the cache of " +
                  sim::print_size(static_cast<std::int64_t>(machine.cache.cache.size)) +
                  ", set by set: only first references miss";
@@ -80,8 +80,8 @@ std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::Mac
   return {std::move(contention), std::move(cache)};
 }
 
-void count_machine_plan(const processors::MachineResult& result, std::vector<PlanEntry>& entries) {
-  const processors::LeftOut& left = result.left_out;
+void count_machine_plan(const processors::replay::MachineResult& result, std::vector<PlanEntry>& entries) {
+  const processors::walk::LeftOut& left = result.left_out;
   for (PlanEntry& entry : entries) {
     if (entry.item == PlanItem::contention && left.read_events) {
       entry.counted = PlanCost{0, left.reads};
@@ -93,4 +93,4 @@ void count_machine_plan(const processors::MachineResult& result, std::vector<Pla
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

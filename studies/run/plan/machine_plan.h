@@ -8,18 +8,18 @@
 #include "processors/replay/replay.h"
 #include "studies/run/plan/plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// Sets the options of the replay that keep what the user wants kept.
-void keep(const KeptItems& kept, processors::ReplayOptions& options);
+void keep(const KeptItems& kept, processors::replay::ReplayOptions& options);
 
 /// Both items for this machine, decided from its configuration and the size of its database, before it runs.
 /// The estimated saving is the number of records that the log refers to.
 [[nodiscard]] std::vector<PlanEntry> machine_plan(const KeptItems& kept,
-                                                  const processors::MachineConfig& machine,
-                                                  const processors::WorkLog& log, bool observed);
+                                                  const processors::machine::MachineConfig& machine,
+                                                  const processors::program::WorkLog& log, bool observed);
 
 /// After the run: enters what was counted.
-void count_machine_plan(const processors::MachineResult& result, std::vector<PlanEntry>& entries);
+void count_machine_plan(const processors::replay::MachineResult& result, std::vector<PlanEntry>& entries);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

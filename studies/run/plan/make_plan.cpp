@@ -8,7 +8,7 @@
 #include "accel/bvh.h"
 #include "accel/traversal.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -166,7 +166,7 @@ PlanEntry structures(const PlanFacts& facts) {
 
 }  // namespace
 
-PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::RenderOptions& render,
+PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::program::RenderOptions& render,
                          const std::string& structure, const KeptItems& keep) {
   PlanFacts facts;
   facts.needs = needs_of(scene, render);
@@ -232,8 +232,8 @@ bool is_left_out(const Plan& plan, PlanItem item) {
   });
 }
 
-processors::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts) {
-  processors::RenderOptions options = facts.render;
+processors::program::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts) {
+  processors::program::RenderOptions options = facts.render;
   // No material continues a chain of rays, so each chain is a single ray.
   if (is_left_out(plan, PlanItem::reflection_rays) && is_left_out(plan, PlanItem::refraction_rays) &&
       !facts.needs.diffuse_rays) {
@@ -265,4 +265,4 @@ void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDe
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

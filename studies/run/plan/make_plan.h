@@ -18,14 +18,14 @@
 #include "studies/run/plan/needs.h"
 #include "studies/run/plan/plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// What the decisions rest on.
 struct PlanFacts {
   SceneNeeds needs;
   scenes::FileUse file;
-  processors::RenderOptions render;  ///< as the configuration has it
-  std::string structure;             ///< its kind
+  processors::program::RenderOptions render;  ///< as the configuration has it
+  std::string structure;                      ///< its kind
   KeptItems keep;
 
   // Of the scene as it was opened.
@@ -35,7 +35,8 @@ struct PlanFacts {
   std::uint64_t normals = 0;      ///< vertices that have normals
 };
 
-[[nodiscard]] PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::RenderOptions& render,
+[[nodiscard]] PlanFacts facts_of_frame(const scenes::Scene& scene,
+                                       const processors::program::RenderOptions& render,
                                        const std::string& structure, const KeptItems& keep);
 
 /// The items of scene and frame. `further` are entries of other items.
@@ -47,7 +48,7 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
 [[nodiscard]] bool is_left_out(const Plan& plan, PlanItem item);
 
 /// The options that render the frame by the plan.
-[[nodiscard]] processors::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts);
+[[nodiscard]] processors::program::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts);
 
 /// Takes out of the scene what the plan leaves out, and decodes the texels that are needed.
 void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode,
@@ -56,7 +57,7 @@ void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDe
 /// Fills in what the frame shows to have been saved. Throws InternalError where the frame has used what was
 /// left out. `totals` and `shades` are what processors::totals_of() says of the frame's log.
 void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene,
-                 const processors::Frame& frame, const processors::LogTotals& totals,
+                 const processors::program::Frame& frame, const processors::program::LogTotals& totals,
                  std::span<const std::uint64_t> shades);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -6,14 +6,14 @@
 #include "processors/program/shading.h"
 #include "studies/run/plan/view.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
-using processors::is_black;
+using processors::program::is_black;
 
-bool is_path(const processors::RenderOptions& options) {
-  return options.integrator == processors::Integrator::path;
+bool is_path(const processors::program::RenderOptions& options) {
+  return options.integrator == processors::program::Integrator::path;
 }
 
 bool transmits(const scenes::Material& material) { return material.transmission > 0.0; }
@@ -21,13 +21,13 @@ bool transmits(const scenes::Material& material) { return material.transmission 
 // Finds out step by step; a step may use what the ones before it have found.
 class Finder {
  public:
-  Finder(const scenes::Scene& scene, const processors::RenderOptions& options)
+  Finder(const scenes::Scene& scene, const processors::program::RenderOptions& options)
       : scene_(scene),
         options_(options),
         everything_(options.voxel_cut > 0.0),
         in_view_(scene.triangles.size() + scene.quadrics.size()) {
     if (is_path(options)) {
-      emitters_ = processors::Emitters(scene);
+      emitters_ = processors::program::Emitters(scene);
     }
   }
 
@@ -47,7 +47,7 @@ class Finder {
 
   // Light that arrives anywhere is scattered on.
   [[nodiscard]] bool sends_scattered(const scenes::Material& material) const {
-    return is_path(options_) && processors::scatters(material);
+    return is_path(options_) && processors::program::scatters(material);
   }
 
   void find_materials() {
@@ -92,8 +92,8 @@ class Finder {
       needs_.reflecting += reflects(material) ? 1U : 0U;
       needs_.transmitting += transmits(material) ? 1U : 0U;
       needs_.diffuse_rays = needs_.diffuse_rays || (options_.max_depth > 1 && sends_scattered(material));
-      const bool asks = processors::asks_lights(material);
-      const bool shows = everything_ ? asks : processors::shows_light(material);
+      const bool asks = processors::program::asks_lights(material);
+      const bool shows = everything_ ? asks : processors::program::shows_light(material);
       needs_.unlit += asks && !shows ? 1U : 0U;
       shows_ = shows_ || shows;
     }
@@ -130,7 +130,7 @@ class Finder {
   }
 
   [[nodiscard]] bool uses_normal(const scenes::Material& material) const {
-    const bool lit = needs_.shining_lights > 0 && processors::asks_lights(material);
+    const bool lit = needs_.shining_lights > 0 && processors::program::asks_lights(material);
     return lit || (options_.max_depth > 1 &&
                    (reflects(material) || transmits(material) || sends_scattered(material)));
   }
@@ -148,9 +148,9 @@ class Finder {
   }
 
   const scenes::Scene& scene_;
-  const processors::RenderOptions& options_;
+  const processors::program::RenderOptions& options_;
   bool everything_;
-  processors::Emitters emitters_;  // wherever they are, points in view ask them for light
+  processors::program::Emitters emitters_;  // wherever they are, points in view ask them for light
   std::vector<bool> in_view_;
   bool secondary_ = false;
   bool shows_ = false;
@@ -159,8 +159,8 @@ class Finder {
 
 }  // namespace
 
-SceneNeeds needs_of(const scenes::Scene& scene, const processors::RenderOptions& options) {
+SceneNeeds needs_of(const scenes::Scene& scene, const processors::program::RenderOptions& options) {
   return Finder(scene, options).find();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

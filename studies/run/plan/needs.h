@@ -11,7 +11,7 @@
 #include "processors/program/render.h"
 #include "scenes/scene.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// `primitives` and `lights` count all there are, needed or not.
 struct SceneNeeds {
@@ -42,6 +42,7 @@ struct SceneNeeds {
 };
 
 /// With the voxel cut everything is needed: its averages are made of all materials and normals.
-[[nodiscard]] SceneNeeds needs_of(const scenes::Scene& scene, const processors::RenderOptions& options);
+[[nodiscard]] SceneNeeds needs_of(const scenes::Scene& scene,
+                                  const processors::program::RenderOptions& options);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -7,7 +7,7 @@
 #include "sim/error.h"
 #include "sim/nearest.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -55,4 +55,4 @@ PlanEntry* find_entry(Plan& plan, PlanItem item) {
   return at == plan.entries.end() ? nullptr : &*at;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 enum class PlanItem : std::uint8_t {
   shadow_rays,
@@ -100,4 +100,4 @@ void add_entries(Plan& plan, std::vector<PlanEntry> entries);
   return plan_item_names[static_cast<std::size_t>(item)];
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -7,7 +7,7 @@
 
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -18,11 +18,11 @@ std::string saving_text(const PlanEntry& entry) {
   const PlanCost& cost = entry.counted ? *entry.counted : entry.saved;
   std::string text;
   if (cost.bytes > 0) {
-    text = bytes(static_cast<double>(cost.bytes));
+    text = tables::bytes(static_cast<double>(cost.bytes));
   }
   if (cost.operations > 0) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
-                        grouped(static_cast<std::int64_t>(cost.operations)), entry.unit);
+                        tables::grouped(static_cast<std::int64_t>(cost.operations)), entry.unit);
   }
   return text.empty() ? text : ": saves " + text;
 }
@@ -75,4 +75,4 @@ Json plan_json(const Plan& plan) {
   return items;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -6,11 +6,11 @@
 
 #include "studies/run/plan/plan.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// A line for each item that is left out, one for those the user keeps, and one for those that are needed.
 [[nodiscard]] std::string plan_lines(const Plan& plan);
 
 [[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -74,4 +74,4 @@ bool View::may_meet(const scenes::Scene& scene, std::uint32_t primitive) const {
   return may_meet(corners);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

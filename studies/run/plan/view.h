@@ -9,7 +9,7 @@
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// The cone of a camera's rays as the half-spaces that it is the intersection of: four sides, and what lies
 /// before the eye.
@@ -31,4 +31,4 @@ class View {
   bool usable_ = false;                  ///< false: the cone is too thin, or not finite
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

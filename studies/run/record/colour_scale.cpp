@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -31,4 +31,4 @@ glm::vec3 colour_of(double share) {
   return {channel(16), channel(8), channel(0)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

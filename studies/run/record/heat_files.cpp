@@ -5,20 +5,20 @@
 
 #include "studies/host/image_file.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-void add_heat_files(const HeatMap& map, PendingFiles& files) {
+void add_heat_files(const HeatMap& map, tables::PendingFiles& files) {
   std::array<std::vector<float>, heats> channels;
   for (std::size_t i = 0; i < heats; ++i) {
     channels[i] = map.figures(static_cast<Heat>(i));
   }
   const std::array<std::string, heats> names = {std::string(heat_names[0]), std::string(heat_names[1]),
                                                 std::string(heat_names[2])};
-  write_channels(map.width(), map.height(), names, channels, files.add("heat.exr"));
+  host::write_channels(map.width(), map.height(), names, channels, files.add("heat.exr"));
   for (std::size_t i = 0; i < heats; ++i) {
-    write_png(false_colour(channels[i], map.width(), map.height(), legend_of(channels[i])),
-              files.add("heat-" + names[i] + ".png"));
+    host::write_png(false_colour(channels[i], map.width(), map.height(), legend_of(channels[i])),
+                    files.add("heat-" + names[i] + ".png"));
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

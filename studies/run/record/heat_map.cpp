@@ -6,12 +6,12 @@
 
 #include "studies/run/record/colour_scale.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-using processors::NodeState;
-using processors::PixelPlace;
+using processors::walk::NodeState;
+using processors::walk::PixelPlace;
 
-void HeatMap::begin(const processors::ReplayInput& input) {
+void HeatMap::begin(const processors::walk::ReplayInput& input) {
   width_ = input.log.width;
   height_ = input.log.height;
   period_ = input.config.clock.period();
@@ -64,9 +64,9 @@ Legend legend_of(const std::vector<float>& figures) {
   return legend;
 }
 
-processors::Image false_colour(const std::vector<float>& figures, std::uint32_t width, std::uint32_t height,
-                               const Legend& legend) {
-  processors::Image image{width, height, {}};
+processors::program::Image false_colour(const std::vector<float>& figures, std::uint32_t width,
+                                        std::uint32_t height, const Legend& legend) {
+  processors::program::Image image{width, height, {}};
   image.pixels.reserve(figures.size());
   for (const float figure : figures) {
     const double share = legend.brightest > 0.0 ? static_cast<double>(figure) / legend.brightest : 0.0;
@@ -75,4 +75,4 @@ processors::Image false_colour(const std::vector<float>& figures, std::uint32_t 
   return image;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

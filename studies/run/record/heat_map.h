@@ -9,7 +9,7 @@
 #include "processors/program/image.h"
 #include "processors/walk/observer.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// The three figures of a pixel. Time that belongs to no pixel (waiting for a packet, building before the
 /// frame, idling) is not counted.
@@ -21,15 +21,15 @@ enum class Heat : std::uint8_t {
 inline constexpr std::size_t heats = 3;
 inline constexpr std::array<std::string_view, heats> heat_names = {"cycles", "misses", "waits"};
 
-class HeatMap final : public processors::Observer {
+class HeatMap final : public processors::walk::Observer {
  public:
   /// Bytes of the computer's memory that recording and writing maps of so many pixels takes, roughly.
   [[nodiscard]] static std::uint64_t host_bytes(std::uint64_t pixels) { return 64 * pixels; }
 
-  void begin(const processors::ReplayInput& input) override;
-  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
-             processors::PixelPlace pixel) override;
-  void missed(std::uint32_t node, std::int64_t misses, processors::PixelPlace pixel) override;
+  void begin(const processors::walk::ReplayInput& input) override;
+  void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::walk::PixelPlace pixel) override;
+  void missed(std::uint32_t node, std::int64_t misses, processors::walk::PixelPlace pixel) override;
 
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
@@ -41,7 +41,7 @@ class HeatMap final : public processors::Observer {
   [[nodiscard]] std::vector<float> figures(Heat heat) const;
 
  private:
-  [[nodiscard]] std::size_t index(processors::PixelPlace pixel) const {
+  [[nodiscard]] std::size_t index(processors::walk::PixelPlace pixel) const {
     return std::size_t{pixel.y} * width_ + pixel.x;
   }
 
@@ -61,7 +61,7 @@ struct Legend {
 [[nodiscard]] Legend legend_of(const std::vector<float>& figures);
 
 /// A map in false colours. All black-blue when every figure is 0.
-[[nodiscard]] processors::Image false_colour(const std::vector<float>& figures, std::uint32_t width,
-                                             std::uint32_t height, const Legend& legend);
+[[nodiscard]] processors::program::Image false_colour(const std::vector<float>& figures, std::uint32_t width,
+                                                      std::uint32_t height, const Legend& legend);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -5,7 +5,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 TextStream::TextStream(const std::filesystem::path& file) : file_(file), pending_(file) {
   sim::Descriptor descriptor = pending_.open();
@@ -32,4 +32,4 @@ void TextStream::fail() const {
   throw sim::UserError(file_.string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

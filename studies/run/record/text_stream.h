@@ -9,7 +9,7 @@
 
 #include "sim/pending_file.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// Written under a temporary name; commit() gives the file its own. A UserError says why it cannot be written
 /// (no such directory, disk full, ...); without commit() nothing is left behind.
@@ -36,4 +36,4 @@ class TextStream {
   std::unique_ptr<std::FILE, Closer> stream_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

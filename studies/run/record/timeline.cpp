@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
-using processors::NodeState;
-using processors::PixelPlace;
+using processors::walk::NodeState;
+using processors::walk::PixelPlace;
 
 namespace {
 
@@ -24,7 +24,7 @@ Timeline::Timeline(const std::filesystem::path& file, const TimelineOptions& opt
   stream_.write("{\"displayTimeUnit\":\"ns\",\"traceEvents\":[");
 }
 
-void Timeline::begin(const processors::ReplayInput& input) {
+void Timeline::begin(const processors::walk::ReplayInput& input) {
   tracks_.resize(input.config.all_nodes());
   cluster_named_.resize(input.config.clusters);
   nodes_a_cluster_ = input.config.nodes;
@@ -97,7 +97,7 @@ void Timeline::put(std::uint32_t node) {
   stream_.write(fmt::format(
       ",\n{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"name\":\"{}\"{}}}",
       node / nodes_a_cluster_ + 1, node + 1, microseconds(slice.from), microseconds(slice.to - slice.from),
-      processors::node_state_names[static_cast<std::size_t>(slice.state)], arguments));
+      processors::walk::node_state_names[static_cast<std::size_t>(slice.state)], arguments));
 }
 
 // Names the node's track, and its cluster's process, before their first slice.
@@ -132,8 +132,8 @@ void Timeline::put_path() {
   name_part("process_sort_index", cluster_named_.size() + 1, tracks_.size() + 1,
             fmt::format("\"sort_index\":{}", cluster_named_.size()));
   name_part("thread_name", cluster_named_.size() + 1, tracks_.size() + 1, "\"name\":\"critical path\"");
-  std::optional<processors::PathPiece> slice;
-  path_->each_from_the_end([&](const processors::PathPiece& piece) {
+  std::optional<processors::path::PathPiece> slice;
+  path_->each_from_the_end([&](const processors::path::PathPiece& piece) {
     if (slice && slice->goes_on_from(piece)) {
       slice->from = piece.from;
       return;
@@ -148,7 +148,7 @@ void Timeline::put_path() {
   }
 }
 
-void Timeline::put_path_slice(const processors::PathPiece& piece) {
+void Timeline::put_path_slice(const processors::path::PathPiece& piece) {
   const sim::Ticks from = std::max(piece.from, options_.from);
   const sim::Ticks to = std::min(piece.to, options_.to);
   if (from >= to) {
@@ -160,11 +160,13 @@ void Timeline::put_path_slice(const processors::PathPiece& piece) {
   }
   ++path_events_;
   path_from_ = from;
-  stream_.write(fmt::format(
-      ",\n{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"name\":\"node {}: {}\"}}",
-      cluster_named_.size() + 1, tracks_.size() + 1, microseconds(from), microseconds(to - from),
-      piece.owner.node,
-      is_own_work(piece.kind) ? "work" : processors::path_kind_names[static_cast<std::size_t>(piece.kind)]));
+  stream_.write(
+      fmt::format(",\n{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"name\":\"node {}: {}\"}}",
+                  cluster_named_.size() + 1, tracks_.size() + 1, microseconds(from), microseconds(to - from),
+                  piece.owner.node,
+                  processors::path::is_own_work(piece.kind)
+                      ? "work"
+                      : processors::path::path_kind_names[static_cast<std::size_t>(piece.kind)]));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

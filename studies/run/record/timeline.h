@@ -13,7 +13,7 @@
 #include "processors/walk/observer.h"
 #include "studies/run/record/text_stream.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 struct TimelineOptions {
   sim::Ticks from = 0;                                     ///< earlier slices are left out
@@ -26,17 +26,17 @@ struct TimelineOptions {
 /// of the NodeState. Slices of a node follow each other, those of different nodes come in any order. Times
 /// are in microseconds with six digits, which is exact. A critical path is one more process, behind the
 /// clusters', with one track.
-class Timeline final : public processors::Observer {
+class Timeline final : public processors::walk::Observer {
  public:
   Timeline(const std::filesystem::path& file, const TimelineOptions& options);
 
   /// Shows the path that `path` records, too; its end() must have been called before this object's, after
   /// which it is not needed any more. Null: no path.
-  void mark(const processors::PathRecorder* path) { path_ = path; }
+  void mark(const processors::path::PathRecorder* path) { path_ = path; }
 
-  void begin(const processors::ReplayInput& input) override;
-  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
-             processors::PixelPlace pixel) override;
+  void begin(const processors::walk::ReplayInput& input) override;
+  void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::walk::PixelPlace pixel) override;
   void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
   void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
   /// Completes and closes the file, still under its temporary name.
@@ -58,8 +58,8 @@ class Timeline final : public processors::Observer {
     sim::Ticks from = 0;
     sim::Ticks to = 0;
     std::uint64_t packet = no_packet;
-    processors::PixelPlace pixel;
-    processors::NodeState state = processors::NodeState::idle;
+    processors::walk::PixelPlace pixel;
+    processors::walk::NodeState state = processors::walk::NodeState::idle;
   };
   struct Track {
     Slice slice;
@@ -69,7 +69,7 @@ class Timeline final : public processors::Observer {
 
   void put(std::uint32_t node);
   void put_path();
-  void put_path_slice(const processors::PathPiece& piece);
+  void put_path_slice(const processors::path::PathPiece& piece);
   // What is missing, for other programs to show; empty if nothing is.
   [[nodiscard]] std::string note() const;
   void name(std::uint32_t node);
@@ -87,7 +87,7 @@ class Timeline final : public processors::Observer {
   std::optional<sim::Ticks> path_cut_at_;
   sim::Ticks path_from_ = 0;  // begin of the path's slice written last
   bool first_ = true;
-  const processors::PathRecorder* path_ = nullptr;
+  const processors::path::PathRecorder* path_ = nullptr;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -7,7 +7,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::vector<std::uint32_t> parse_nodes(std::string_view text, std::uint32_t node
   return list;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 /// "0-3", "5", "0,2,8-9": node numbers and ranges with both ends, ascending and without doubles; empty: all
 /// of `nodes`. Throws UserError naming what is wrong.
 [[nodiscard]] std::vector<std::uint32_t> parse_nodes(std::string_view text, std::uint32_t nodes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

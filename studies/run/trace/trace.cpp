@@ -21,24 +21,24 @@
 #include "studies/run/run_result.h"
 #include "studies/run/trace/node_list.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 namespace {
 
-using processors::Feature;
+using processors::machine::Feature;
 
-void refuse_other_machines(const sim::Config& config, const processors::MachineConfig& machine) {
-  if (machine.scheme != processors::Scheme::image) {
+void refuse_other_machines(const sim::Config& config, const processors::machine::MachineConfig& machine) {
+  if (machine.scheme != processors::machine::Scheme::image) {
     config.fail("machine.scheme", "only nodes of the image scheme have references that a trace can hold");
   }
   for (const Feature feature : {Feature::contexts, Feature::prefetch}) {
-    if (has(machine, feature)) {
+    if (processors::machine::has(machine, feature)) {
       config.fail(
-          key_of(machine, feature),
+          processors::machine::key_of(machine, feature),
           "a trace is in the order of the program, which is not that in which such a node refers to lines");
     }
   }
-  if (machine.build.sharing != processors::Sharing::given) {
+  if (machine.build.sharing != processors::machine::Sharing::given) {
     config.fail("build.sharing",
                 "while the tree is built, other nodes decide what a node reads; a trace needs \"given\"");
   }
@@ -53,11 +53,11 @@ struct Count {
 };
 
 // One node's file; `most_bytes` may still be written.
-Count write_trace(const processors::ReferenceTrace& trace, std::uint32_t node, std::uint64_t most_bytes,
-                  TextStream& file) {
+Count write_trace(const processors::passes::ReferenceTrace& trace, std::uint32_t node,
+                  std::uint64_t most_bytes, TextStream& file) {
   Count count;
   std::array<char, 64> line{};
-  trace.for_each(node, [&](const processors::Reference& reference) {
+  trace.for_each(node, [&](const processors::passes::Reference& reference) {
     char* at = line.data();
     *at++ = reference.write ? '1' : '0';
     *at++ = ' ';
@@ -87,19 +87,20 @@ std::string describe(const std::filesystem::path& file, const Count& count) {
 
 std::string write_traces(sim::Config& config, const TraceOptions& options,
                          const std::filesystem::path& directory) {
-  const FrameConfig frame = read_frame(config);
+  const keys::FrameConfig frame = keys::read_frame(config);
   refuse_several_frames(config, frame.frames);
-  const processors::MachineConfig machine = read_machine(config);
-  (void)read_record(config, true);  // reads the keys, so that what `marti run` would record is no error here
+  const processors::machine::MachineConfig machine = keys::read_machine(config);
+  (void)keys::read_record(config,
+                          true);  // reads the keys, so that what `marti run` would record is no error here
   config.refuse_unused();
   refuse_beyond_memory(config, frame, machine);
   refuse_other_machines(config, machine);
   const std::vector<std::uint32_t> nodes = parse_nodes(options.nodes, machine.all_nodes());
   const FunctionalRun functional = run_functional(frame);
-  processors::ReferenceTrace trace;
-  processors::ReplayOptions watched;
+  processors::passes::ReferenceTrace trace;
+  processors::replay::ReplayOptions watched;
   watched.observer = &trace;
-  (void)processors::replay(*functional.frame.log, machine, watched);
+  (void)processors::replay::replay(*functional.frame.log, machine, watched);
 
   std::string text;
   std::uint64_t left = options.most_bytes;
@@ -117,11 +118,11 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
                            "; choose fewer nodes with --nodes, or raise it");
     }
   }
-  const SignalsHeld held;
+  const host::SignalsHeld held;
   for (const std::unique_ptr<TextStream>& file : files) {
     file->commit();
   }
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

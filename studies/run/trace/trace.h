@@ -7,7 +7,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::run {
 
 struct TraceOptions {
   std::string nodes;                                   ///< "0-3", "5", "0,2,8-9"; empty: all
@@ -25,4 +25,4 @@ struct TraceOptions {
 [[nodiscard]] std::string write_traces(sim::Config& config, const TraceOptions& options,
                                        const std::filesystem::path& directory);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::run

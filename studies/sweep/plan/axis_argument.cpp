@@ -16,7 +16,7 @@
 #include "sim/trim.h"
 #include "studies/sweep/plan/sweep_table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -207,4 +207,4 @@ AxisArgument read_axis_argument(const sim::Config& config, const std::string& ar
   return ArgumentReader(config, argument).read();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

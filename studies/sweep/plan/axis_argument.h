@@ -7,7 +7,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The values of one key.
 struct AxisArgument {
@@ -21,4 +21,4 @@ struct AxisArgument {
 /// value, a range that is empty, does not go up or has more than most_sweep_steps values.
 [[nodiscard]] AxisArgument read_axis_argument(const sim::Config& config, const std::string& argument);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -8,7 +8,7 @@
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -41,11 +41,11 @@ bool is_boolean_axis(const std::string& axis) {
   return key != nullptr && key->type == sim::ValueType::boolean && !key->is_list;
 }
 
-std::string axis_text(const std::string& axis, const Cell& value) {
+std::string axis_text(const std::string& axis, const tables::Cell& value) {
   if (const auto* text = std::get_if<std::string>(&value)) {
     return *text;
   }
-  const std::optional<double> number = number_of(value);
+  const std::optional<double> number = tables::number_of(value);
   if (!number) {
     return "none";
   }
@@ -66,4 +66,4 @@ std::string axis_text(const std::string& axis, const Cell& value) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

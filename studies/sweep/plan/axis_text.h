@@ -5,7 +5,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The unit in which the values of an axis are numbers: "byte", "Hz", "ps", ...; empty for an axis of texts,
 /// and for "point".
@@ -16,6 +16,6 @@ namespace marti::studies {
 
 /// A value as its key would have it in a file, without quotation marks: "16 KiB", "33 MHz", "true"; "none"
 /// where the point has no value.
-[[nodiscard]] std::string axis_text(const std::string& axis, const Cell& value);
+[[nodiscard]] std::string axis_text(const std::string& axis, const tables::Cell& value);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

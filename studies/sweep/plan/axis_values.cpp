@@ -14,7 +14,7 @@
 #include "sim/shown.h"
 #include "studies/sweep/plan/sweep_table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -234,4 +234,4 @@ std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key
   return settings;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

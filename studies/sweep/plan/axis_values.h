@@ -7,7 +7,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The settings that `value` lists for the key of this index: a list of values, or a range
 /// `{ from = ..., to = ..., steps = ..., scale = "linear" | "log" }`, whose ends are exact. The steps of
@@ -19,4 +19,4 @@ namespace marti::studies {
                                                     const sim::DocumentValue& value, bool repeats,
                                                     std::vector<std::string>& notes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -15,7 +15,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 class ByteWriter {
  public:
@@ -129,4 +129,4 @@ class ByteReader {
   std::string_view what_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

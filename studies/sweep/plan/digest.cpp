@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 std::string Digest::hex() const { return fmt::format("{:016x}{:016x}", high(), low()); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

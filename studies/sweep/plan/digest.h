@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The 128-bit FNV-1a hash (Fowler, Noll, Vo; draft-eastlake-fnv, section 5) of a text in pieces. Among a
 /// million different texts two are equal with a probability of about 1e-27.
@@ -30,4 +30,4 @@ class Digest {
   Word word_ = (Word{0x6c62272e07bb0142ULL} << 64U) + 0x62b821756295c58dULL;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

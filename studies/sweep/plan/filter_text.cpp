@@ -11,7 +11,7 @@
 #include "sim/shown.h"
 #include "sim/units.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -342,4 +342,4 @@ FilterText translate_filter(const sim::Schema& schema, std::string_view text, bo
   return Translator(schema, text, points, place).translate();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -8,7 +8,7 @@
 
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// An expression whose columns are quoted names: of keys, or "point".
 struct FilterText {
@@ -30,4 +30,4 @@ struct FilterText {
 /// May the filter call this function? Names are in lower case.
 [[nodiscard]] bool is_filter_function(std::string_view name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -2,11 +2,11 @@
 
 #include "studies/sweep/plan/sweep_row.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
-FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash) {
+FrameRow frame_row(const run::FunctionalRun& run, std::uint64_t scene_hash) {
   FrameRow row;
-  row.counters = frame_counts(run);
+  row.counters = run::frame_counts(run);
   row.scene = run.scene.name;
   row.scene_hash = fmt::format("{:016x}", scene_hash);
   row.image_hash = fmt::format("{:016x}", run.image_hash);
@@ -16,4 +16,4 @@ FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash) {
   return row;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

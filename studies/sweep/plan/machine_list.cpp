@@ -13,11 +13,11 @@
 #include "studies/run/scene_hash.h"
 #include "studies/sweep/plan/digest.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 std::string digest_of(const SweepPlan& plan) {
   Digest digest;
-  digest.add(build_of_program());
+  digest.add(host::build_of_program());
   for (const SweepFrame& frame : plan.frames) {
     digest.add(frame.key);
   }
@@ -87,11 +87,11 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
     return found->second;
   }
   Digest digest;
-  digest.add(std::string(build_of_program()) + "\n" + read.frame_digest);
+  digest.add(std::string(host::build_of_program()) + "\n" + read.frame_digest);
   std::optional<std::uint64_t> hash;
   if (file) {
-    const scenes::Scene scene = sim::with_places(read.config, [&] { return open_frame(read.frame); });
-    hash = scene_hash(scene);
+    const scenes::Scene scene = sim::with_places(read.config, [&] { return run::open_frame(read.frame); });
+    hash = run::scene_hash(scene);
     digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));
     // The notes are kept with the frame's row, so they are part of its key.
     for (const std::string& note : scene.notes) {
@@ -109,4 +109,4 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
   return index;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

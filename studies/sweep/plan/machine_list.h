@@ -10,7 +10,7 @@
 #include "studies/sweep/plan/read_point.h"
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 class MachineList {
  public:
@@ -39,4 +39,4 @@ class MachineList {
   std::unordered_map<std::string, std::size_t> machine_of_key_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

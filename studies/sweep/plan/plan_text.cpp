@@ -6,7 +6,7 @@
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -31,7 +31,7 @@ std::string shorten(const std::vector<std::string>& steps) {
          fmt::format(" ({} values)", steps.size());
 }
 
-std::string number(std::uint64_t count) { return grouped(static_cast<std::int64_t>(count)); }
+std::string number(std::uint64_t count) { return tables::grouped(static_cast<std::int64_t>(count)); }
 
 }  // namespace
 
@@ -55,7 +55,7 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   for (std::size_t i = 0; i < std::min(most_skipped_shown, plan.skipped.size()); ++i) {
     line("", "left out: " + plan.skipped[i].point + ": " + plan.skipped[i].reason);
   }
-  line("frames", fmt::format("{}, {} done", counted(plan.frames.size(), "functional run"),
+  line("frames", fmt::format("{}, {} done", tables::counted(plan.frames.size(), "functional run"),
                              number(outlook.frames_done)));
 
   std::vector<bool> asked_for(plan.machines.size());
@@ -76,7 +76,7 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
     line("price", fmt::format("{:.6g} to {:.6g} a machine", cheapest->cost, dearest->cost));
   }
   if (outlook.seconds) {
-    line("time", "about " + duration_text(*outlook.seconds));
+    line("time", "about " + tables::duration_text(*outlook.seconds));
   } else if (outlook.not_estimated) {
     line("time",
          "not estimated: the scene or its machines are so large that an estimate would take long itself");
@@ -87,11 +87,11 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   if (large || outlook.log_bytes || outlook.machine_bytes) {
     const auto logs = static_cast<double>(outlook.log_bytes.value_or(0));
     const auto machines_in_flight = static_cast<double>(outlook.machine_bytes.value_or(0));
-    line("memory",
-         fmt::format("about {}: {}work logs {}, machines {}",
-                     bytes(logs + machines_in_flight + (large ? itself : 0.0)),
-                     large ? "the plan " + bytes(itself) + ", " : "",
-                     outlook.not_estimated ? "not estimated" : bytes(logs), bytes(machines_in_flight)));
+    line("memory", fmt::format("about {}: {}work logs {}, machines {}",
+                               tables::bytes(logs + machines_in_flight + (large ? itself : 0.0)),
+                               large ? "the plan " + tables::bytes(itself) + ", " : "",
+                               outlook.not_estimated ? "not estimated" : tables::bytes(logs),
+                               tables::bytes(machines_in_flight)));
   }
   for (const std::string& note : plan.notes) {
     line("note", note);
@@ -99,4 +99,4 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

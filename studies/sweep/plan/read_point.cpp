@@ -9,7 +9,7 @@
 #include "studies/run/run_result.h"
 #include "studies/sweep/plan/digest.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -49,11 +49,11 @@ void set(sim::Config& config, std::string_view key, sim::Value value) {
 ReadPoint read_point(sim::Config config) {
   ReadPoint point{std::move(config), {}, {}, {}, {}, {}, {}};
   const std::vector<sim::Key>::size_type keys = point.config.schema().keys().size();
-  point.frame = read_frame(point.config);
-  refuse_several_frames(point.config, point.frame.frames);
+  point.frame = keys::read_frame(point.config);
+  run::refuse_several_frames(point.config, point.frame.frames);
   point.frame_keys = keys_read(point.config);
-  point.machine = read_machine(point.config);
-  refuse_beyond_memory(point.config, point.frame, point.machine);
+  point.machine = keys::read_machine(point.config);
+  run::refuse_beyond_memory(point.config, point.frame, point.machine);
 
   Digest frame;
   Digest machine;
@@ -100,10 +100,10 @@ sim::Config one_node_config(const ReadPoint& point) {
   for (const std::string_view key : counting_keys) {
     one.reset(*one.schema().find(key));
   }
-  if (point.machine.scheme != processors::Scheme::image) {
+  if (point.machine.scheme != processors::machine::Scheme::image) {
     set(one, "machine.scheme", std::string("image"));
   }
-  if (point.machine.scheme == processors::Scheme::space) {
+  if (point.machine.scheme == processors::machine::Scheme::space) {
     set(one, "database.placement", std::string("replicated"));
   }
   return one;
@@ -114,4 +114,4 @@ bool is_set_for_one_node(std::string_view key) {
          std::find(counting_keys.begin(), counting_keys.end(), key) != counting_keys.end();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

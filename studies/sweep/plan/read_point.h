@@ -8,16 +8,16 @@
 #include "sim/config.h"
 #include "studies/keys/frame_keys.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// A configuration with a point's settings, read.
 struct ReadPoint {
   sim::Config config;  ///< knows which keys were read
-  FrameConfig frame;
+  keys::FrameConfig frame;
   std::string
       frame_digest;  ///< 32 hexadecimal digits of the frame's keys and values, host_machine.* left out
   std::vector<bool> frame_keys;  ///< for each key of the schema: has the frame read it?
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   std::string machine_digest;                 ///< digest of the keys that only the machine has read
   std::vector<sim::EffectiveValue> settings;  ///< these keys and values, in the order of the schema
 };
@@ -35,4 +35,4 @@ struct ReadPoint {
 /// Does one_node_config() give this key a value of its own, whatever the point gives it?
 [[nodiscard]] bool is_set_for_one_node(std::string_view key);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

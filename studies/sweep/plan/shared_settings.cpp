@@ -6,7 +6,7 @@
 
 #include "studies/sweep/plan/byte_codec.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 std::string_view section_of(std::string_view key) { return key.substr(0, key.rfind('.')); }
 
@@ -38,4 +38,4 @@ std::vector<sim::EffectiveValue> all_of(const SharedSettings& settings) {
   return all;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -10,7 +10,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The settings of one section of a configuration, in the order of the schema; immutable, and shared by all
 /// machines that have them alike.
@@ -34,4 +34,4 @@ class SettingsPool {
 /// All settings of a machine, in the order of the schema.
 [[nodiscard]] std::vector<sim::EffectiveValue> all_of(const SharedSettings& settings);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

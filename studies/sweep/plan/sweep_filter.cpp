@@ -7,7 +7,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -77,4 +77,4 @@ bool SweepFilter::passes(std::span<const sim::Value> values) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

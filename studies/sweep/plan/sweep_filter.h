@@ -13,7 +13,7 @@
 #include "sim/schema.h"
 #include "studies/sweep/plan/filter_text.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Decides point by point. The expression is SQLite's, over values and functions only: no table can be read.
 class SweepFilter {
@@ -38,4 +38,4 @@ class SweepFilter {
   std::optional<SQLite::Statement> statement_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

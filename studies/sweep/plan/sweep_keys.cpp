@@ -6,7 +6,7 @@
 #include "studies/keys/record_keys.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 void declare_sweep_keys(sim::Schema& schema) {
   schema.text("sweep.filter", "",
@@ -14,12 +14,12 @@ void declare_sweep_keys(sim::Schema& schema) {
               "cache.ways <= 8\"; empty: all");
   schema.boolean("sweep.skip_invalid", false,
                  "leave out points whose machine cannot be built, instead of refusing the sweep");
-  declare_price_keys(schema);
+  keys::declare_price_keys(schema);
 }
 
 const sim::Schema& sweep_schema() {
   static const sim::Schema schema = [] {
-    sim::Schema keys = run_schema();
+    sim::Schema keys = run::run_schema();
     declare_sweep_keys(keys);
     return keys;
   }();
@@ -32,10 +32,10 @@ void refuse_records(sim::Config& config) {
       config.fail(key, "a sweep records nothing beside its counters; leave it out, or use `marti run`");
     }
   }
-  (void)read_record(config, true);
+  (void)keys::read_record(config, true);
   if (config.boolean("count.working_set")) {
     config.fail("count.working_set", "a sweep keeps no working sets; leave it out, or use `marti run`");
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -4,7 +4,7 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The keys of [sweep] and of [prices]; read_sweep_table (sweep/plan/sweep_table.h) reads what else [sweep]
 /// holds.
@@ -16,4 +16,4 @@ void declare_sweep_keys(sim::Schema& schema);
 /// Throws UserError when something is to be recorded: a sweep has no directory for each machine.
 void refuse_records(sim::Config& config);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -17,7 +17,7 @@
 #include "studies/sweep/plan/sweep_points.h"
 #include "studies/sweep/plan/sweep_table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -52,7 +52,7 @@ class Planner {
  public:
   Planner(sim::Config& config, std::span<const std::string> axes)
       : config_(config),
-        prices_(read_prices(config)),
+        prices_(keys::read_prices(config)),
         filter_(config.text("sweep.filter")),
         skip_invalid_(config.boolean("sweep.skip_invalid")),
         table_(read_sweep_table(config, axes)),
@@ -68,9 +68,9 @@ class Planner {
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();
     sim::with_places(config_, [&] {
-      read_memory(config_).require(plan_bytes(passing.size(), plan_.axes.size()),
-                                   "the plan of " + std::to_string(passing.size()) + " points takes",
-                                   "split the sweep");
+      keys::read_memory(config_).require(plan_bytes(passing.size(), plan_.axes.size()),
+                                         "the plan of " + std::to_string(passing.size()) + " points takes",
+                                         "split the sweep");
     });
     plan_.points.reserve(passing.size());
     found_.reserve(passing.size() + 1);
@@ -242,7 +242,7 @@ class Planner {
     }
     point.machine = found_.enter(read);
     point.base = base;
-    point.cost = cost_of(prices_, read.machine);
+    point.cost = keys::cost_of(prices_, read.machine);
     found_.used_by_point(point.machine, plan_.points.size());
     plan_.points.push_back(std::move(point));
   }
@@ -304,7 +304,7 @@ class Planner {
   }
 
   sim::Config& config_;
-  Prices prices_;
+  keys::Prices prices_;
   std::string filter_;
   bool skip_invalid_;
   SweepTable table_;
@@ -334,4 +334,4 @@ SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes) {
   return Planner(config, axes).plan();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

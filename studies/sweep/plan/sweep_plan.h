@@ -12,14 +12,14 @@
 #include "studies/keys/frame_keys.h"
 #include "studies/sweep/plan/shared_settings.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// One functional run: equal values give the same image and the same work log.
 struct SweepFrame {
   /// 32 hexadecimal digits of the settings, of the program's build (program_build.h) and, where the scene is
   /// a file, of the scene in it.
   std::string key;
-  FrameConfig config;
+  keys::FrameConfig config;
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
   /// Hash of the scene as it was planned, where it is a file; the scene must be the same when it is traced.
   std::optional<std::uint64_t> scene_hash{};
@@ -29,7 +29,7 @@ struct SweepFrame {
 struct SweepMachine {
   std::string key;        ///< 32 hexadecimal digits of the frame's key and the machine's settings
   std::size_t frame = 0;  ///< index into SweepPlan::frames
-  processors::MachineConfig config;
+  processors::machine::MachineConfig config;
   SharedSettings settings;  ///< the machine's keys only
 };
 
@@ -106,4 +106,4 @@ struct SweepOutlook {
 /// The plan as text for people, a few lines.
 [[nodiscard]] std::string describe(const SweepPlan& plan, const SweepOutlook& outlook = {});
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 SweepPoints::SweepPoints(const sim::Config& config, const SweepTable& table)
     : config_(config),
@@ -60,4 +60,4 @@ std::string SweepPoints::text(std::uint64_t point) const {
   return text;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

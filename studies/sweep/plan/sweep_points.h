@@ -9,7 +9,7 @@
 #include "sim/config.h"
 #include "studies/sweep/plan/sweep_table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Refers to both constructor arguments, which must outlive it.
 class SweepPoints {
@@ -45,4 +45,4 @@ class SweepPoints {
   bool named_ = false;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -4,7 +4,7 @@
 
 #include "studies/figures/machine_totals.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -15,10 +15,11 @@ constexpr std::array<std::string_view, 4> histogram_names = {"interconnect_wait"
 
 std::span<const std::string_view> sweep_histogram_names() { return histogram_names; }
 
-SweepRow sweep_row(const processors::MachineConfig& machine, const processors::MachineResult& result) {
-  const MachineTotals totals = totals_of(result);
+SweepRow sweep_row(const processors::machine::MachineConfig& machine,
+                   const processors::replay::MachineResult& result) {
+  const figures::MachineTotals totals = figures::totals_of(result);
   SweepRow row;
-  row.counters = counts_of(machine, result, totals);
+  row.counters = figures::counts_of(machine, result, totals);
   const std::array<const std::optional<memory::WaitStatistics>*, histogram_names.size()> waits = {
       &totals.interconnect_waits, &totals.bank_waits, &totals.network_waits, &totals.l2_waits};
   for (std::size_t i = 0; i < waits.size(); ++i) {
@@ -34,4 +35,4 @@ SweepRow sweep_row(const processors::MachineConfig& machine, const processors::M
   return row;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

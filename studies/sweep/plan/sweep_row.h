@@ -16,7 +16,7 @@
 #include "studies/run/frame_figures.h"
 #include "studies/run/functional_run.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Some waits of a machine, log-scaled. Only buckets that hold something.
 struct SweepHistogram {
@@ -34,7 +34,7 @@ struct SweepHistogram {
 };
 
 struct SweepRow {
-  Counts counters;  ///< one for each of counted_figures()
+  figures::Counts counters;  ///< one for each of counted_figures()
   std::vector<SweepHistogram> histograms;
   bool operator==(const SweepRow&) const = default;
   static auto parts(auto& row) { return std::tie(row.counters, row.histograms); }
@@ -44,14 +44,14 @@ struct SweepRow {
 [[nodiscard]] std::span<const std::string_view> sweep_histogram_names();
 
 /// Throws InternalError for a sum that does not fit.
-[[nodiscard]] SweepRow sweep_row(const processors::MachineConfig& machine,
-                                 const processors::MachineResult& result);
+[[nodiscard]] SweepRow sweep_row(const processors::machine::MachineConfig& machine,
+                                 const processors::replay::MachineResult& result);
 
 /// What is kept of a functional run: counters of its scene, structure, rays and log.
 struct FrameRow {
-  Counts counters;         ///< one for each of frame_figures()
-  std::string scene;       ///< its name
-  std::string scene_hash;  ///< 16 hexadecimal digits, like the other hashes
+  figures::Counts counters;  ///< one for each of frame_figures()
+  std::string scene;         ///< its name
+  std::string scene_hash;    ///< 16 hexadecimal digits, like the other hashes
   std::string image_hash;
   std::string hit_hash;
   std::vector<std::string> notes;
@@ -62,6 +62,6 @@ struct FrameRow {
 };
 
 /// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).
-[[nodiscard]] FrameRow frame_row(const FunctionalRun& run, std::uint64_t scene_hash);
+[[nodiscard]] FrameRow frame_row(const run::FunctionalRun& run, std::uint64_t scene_hash);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

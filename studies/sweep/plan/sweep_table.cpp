@@ -13,7 +13,7 @@
 #include "studies/sweep/plan/axis_argument.h"
 #include "studies/sweep/plan/axis_values.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -277,4 +277,4 @@ SweepTable read_sweep_table(const sim::Config& config, std::span<const std::stri
   return TableReader(config).read(arguments);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -10,7 +10,7 @@
 
 #include "sim/config.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// The most steps of an axis, and the most points of a sweep before its filter.
 inline constexpr std::int64_t most_sweep_steps = 100'000;
@@ -41,4 +41,4 @@ struct SweepTable {
 [[nodiscard]] SweepTable read_sweep_table(const sim::Config& config,
                                           std::span<const std::string> arguments = {});
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -36,4 +36,4 @@ std::uint32_t launched_processes() {
   return 1;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

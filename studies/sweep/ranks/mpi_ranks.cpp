@@ -11,7 +11,7 @@
 #include "studies/sweep/ranks/launch.h"
 #include "studies/sweep/ranks/ranks.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -138,4 +138,4 @@ void end_all_ranks(int status) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -3,7 +3,7 @@
 #include "studies/sweep/ranks/launch.h"
 #include "studies/sweep/ranks/ranks.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -28,4 +28,4 @@ void Ranks::flush() { none(); }
 
 void end_all_ranks(int /*status*/) {}
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -11,7 +11,7 @@
 #include "sim/error.h"
 #include "studies/sweep/ranks/rank_sweep.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -214,4 +214,4 @@ void work_for_rank_0(Ranks& ranks, unsigned workers,
   std::rethrow_exception(error);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -8,7 +8,7 @@
 #include "sim/error.h"
 #include "studies/sweep/ranks/rank_sweep.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -140,4 +140,4 @@ void RankServer::handle(const SweepSite& site, Coordinator& coordinator, std::si
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -17,7 +17,7 @@
 #include "studies/sweep/work/coordinator.h"
 #include "studies/sweep/work/sweep_worker.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Rank 0's part. Made before the Coordinator, whose `over` must call over().
 class RankServer {
@@ -63,4 +63,4 @@ class RankServer {
 void work_for_rank_0(Ranks& ranks, unsigned workers,
                      const std::function<SweepSite&(const std::string& configuration)>& prepare);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,7 +5,7 @@
 
 #include "studies/sweep/ranks/ranks.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 unsigned threads_of_rank(const Ranks& ranks) {
   cpu_set_t set;
@@ -19,4 +19,4 @@ unsigned threads_of_rank(const Ranks& ranks) {
   return static_cast<unsigned>(std::max<std::size_t>(1, bound ? mine : mine / ranks.on_this_computer()));
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// How long a process that waits for another one sleeps before it looks again.
 inline constexpr auto pause = std::chrono::milliseconds(1);
@@ -61,4 +61,4 @@ void end_all_ranks(int status);
 /// the launcher has bound each to its own.
 [[nodiscard]] unsigned threads_of_rank(const Ranks& ranks);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

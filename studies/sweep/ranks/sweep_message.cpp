@@ -3,7 +3,7 @@
 #include "sim/error.h"
 #include "studies/sweep/plan/byte_codec.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -47,4 +47,4 @@ SweepMessage decode_sweep_message(std::string_view bytes) {
   return message;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

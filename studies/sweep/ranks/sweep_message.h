@@ -8,7 +8,7 @@
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/work/schedule.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// A kind uses the members that it names.
 struct SweepMessage {
@@ -39,4 +39,4 @@ struct SweepMessage {
 /// Throws InternalError for bytes that are not a message.
 [[nodiscard]] SweepMessage decode_sweep_message(std::string_view bytes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

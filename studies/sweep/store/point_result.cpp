@@ -9,7 +9,7 @@
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -18,19 +18,19 @@ using Json = nlohmann::ordered_json;
 Json machine_figures(const SweepReader& sweep, const SweepRow& row, std::int64_t base_machine) {
   Json figures = Json::object();
   const auto enter = [&figures](const std::string& name, auto value) { figures[name] = value; };
-  for_each_count(counted_figures(), row.counters, enter);
+  figures::for_each_count(figures::counted_figures(), row.counters, enter);
   const std::optional<SweepRow> base = sweep.read_result(base_machine);
   const std::optional<std::int64_t> other = sweep.compare();
   const std::optional<SweepRow> compared = other ? sweep.read_result(*other) : std::nullopt;
-  for_each_derived(
+  figures::for_each_derived(
       {&row.counters, base ? &base->counters : nullptr, compared ? &compared->counters : nullptr}, enter);
   return figures;
 }
 
 Json frame_json(const FrameRow& frame) {
   Json figures = {{"scene", frame.scene}, {"image_hash", frame.image_hash}, {"hit_hash", frame.hit_hash}};
-  for_each_count(frame_figures(), frame.counters,
-                 [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+  figures::for_each_count(run::frame_figures(), frame.counters,
+                          [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
   return figures;
 }
 
@@ -48,7 +48,7 @@ Json waits_json(const SweepRow& row, std::string_view what) {
 
 }  // namespace
 
-RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
+tables::RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::string& name) {
   const std::vector<StoredPoint> points = sweep.points();
   if (ordinal < 0 || static_cast<std::size_t>(ordinal) >= points.size()) {
     throw sim::UserError(name + ": there is no such point; the sweep has " + std::to_string(points.size()) +
@@ -72,11 +72,11 @@ RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::
                       {"distributed", {{"network", waits_json(*row, "network_wait")}}}};
   Json result = {
       {"marti", {{"version", sweep.version()}}},
-      {"config", config_json(name, settings)},
+      {"config", keys::config_json(name, settings)},
       {"figures", {{"frame", frame_json(*frame)}, {"machine", machine_figures(sweep, *row, point.base)}}},
       {"scene", {{"hash", frame->scene_hash}}},
       {"machine", {{"per_cluster", Json::array({waits})}}}};
-  return {std::move(result), name, MadeBy::sweep};
+  return {std::move(result), name, tables::MadeBy::sweep};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -8,10 +8,11 @@
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/run_json.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// `name` is that of the point on the command line, for messages. Throws UserError when the point has not
 /// been run yet, or there is no such point.
-[[nodiscard]] RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, const std::string& name);
+[[nodiscard]] tables::RunJson point_result(const SweepReader& sweep, std::int64_t ordinal,
+                                           const std::string& name);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

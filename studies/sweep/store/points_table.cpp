@@ -16,18 +16,18 @@
 #include "studies/tables/text_table.h"
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
 struct Row {
   StoredPoint point;
-  std::vector<Cell> figures;
+  std::vector<tables::Cell> figures;
 };
 
 std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string> names) {
   std::vector<Row> rows;
-  reader.for_each_point(names, [&](const StoredPoint& point, std::span<const Cell> cells) {
+  reader.for_each_point(names, [&](const StoredPoint& point, std::span<const tables::Cell> cells) {
     if (point.done) {
       rows.push_back({point, {cells.begin(), cells.end()}});
     }
@@ -36,21 +36,23 @@ std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string>
 }
 
 // The type of a figure: text, if its first value is one; integer, if all its values are; else real.
-ColumnType type_of(std::span<const Row> rows, std::size_t index) {
+tables::ColumnType type_of(std::span<const Row> rows, std::size_t index) {
   bool real = false;
-  std::optional<ColumnType> first;
+  std::optional<tables::ColumnType> first;
   for (const Row& row : rows) {
-    const Cell& cell = row.figures[index];
+    const tables::Cell& cell = row.figures[index];
     real = real || std::holds_alternative<double>(cell);
     if (!first && !std::holds_alternative<std::monostate>(cell)) {
-      first = std::holds_alternative<std::string>(cell) ? ColumnType::text : ColumnType::integer;
+      first =
+          std::holds_alternative<std::string>(cell) ? tables::ColumnType::text : tables::ColumnType::integer;
     }
   }
-  return first == ColumnType::integer && real ? ColumnType::real : first.value_or(ColumnType::real);
+  return first == tables::ColumnType::integer && real ? tables::ColumnType::real
+                                                      : first.value_or(tables::ColumnType::real);
 }
 
 // A figure without its type.
-Column column_of(const std::string& name) {
+tables::Column column_of(const std::string& name) {
   static const std::map<std::string, std::pair<std::string, std::string>> own = {
       {"cost", {"1", "price of the machine, by [prices]"}},
       {"ordinal", {"1", "number of the point in the sweep, from 0"}},
@@ -58,7 +60,7 @@ Column column_of(const std::string& name) {
       {"base", {"", "id of the machine that its speed-up is measured against"}},
       {"point", {"", "name in [sweep.points]"}},
       {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
-  Column column{name, ColumnType::real, axis_unit(name), "the key " + name};
+  tables::Column column{name, tables::ColumnType::real, axis_unit(name), "the key " + name};
   const auto describe = [&](const std::string& unit, const std::string& description) {
     column.unit = unit;
     column.description = description;
@@ -66,8 +68,8 @@ Column column_of(const std::string& name) {
   if (const auto found = own.find(name); found != own.end()) {
     describe(found->second.first, found->second.second);
   }
-  for (const auto& figures : {counted_figures(), derived_figures()}) {
-    for (const FigureEntry& figure : figures) {
+  for (const auto& figures : {figures::counted_figures(), figures::derived_figures()}) {
+    for (const figures::FigureEntry& figure : figures) {
       if (figure.name == name) {
         describe(figure.unit, figure.description);
       }
@@ -76,21 +78,21 @@ Column column_of(const std::string& name) {
   return column;
 }
 
-Table table_of(std::string name, std::string title, std::span<const std::string> names,
-               std::span<const Row> rows) {
-  std::vector<Column> columns;
+tables::Table table_of(std::string name, std::string title, std::span<const std::string> names,
+                       std::span<const Row> rows) {
+  std::vector<tables::Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(column_of(names[i]));
-    columns.back().type = is_boolean_axis(names[i]) ? ColumnType::boolean : type_of(rows, i);
-    if (columns.back().type == ColumnType::text) {
+    columns.back().type = is_boolean_axis(names[i]) ? tables::ColumnType::boolean : type_of(rows, i);
+    if (columns.back().type == tables::ColumnType::text) {
       columns.back().unit.clear();  // its text holds the unit
     }
   }
-  Table table(std::move(name), std::move(title), columns);
+  tables::Table table(std::move(name), std::move(title), columns);
   for (const Row& row : rows) {
-    std::vector<Cell> cells;
+    std::vector<tables::Cell> cells;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      cells.push_back(as_type(row.figures[i], columns[i].type));
+      cells.push_back(tables::as_type(row.figures[i], columns[i].type));
     }
     table.add_row(std::move(cells));
   }
@@ -99,7 +101,7 @@ Table table_of(std::string name, std::string title, std::span<const std::string>
 
 }  // namespace
 
-Table points_table(const SweepReader& reader) {
+tables::Table points_table(const SweepReader& reader) {
   const std::vector<std::string>& names = reader.figures();
   return table_of("points", "Points of the sweep", names, rows_of(reader, names));
 }
@@ -108,20 +110,20 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   std::vector<std::string> names = reader.axes();
   const std::size_t axes = names.size();
   names.insert(names.end(), {"cost", metric});
-  const FigureEntry& figure = figure_named(metric);
-  const Better better = figure.better;
+  const figures::FigureEntry& figure = figures::figure_named(metric);
+  const figures::Better better = figure.better;
   std::vector<Row> rows = rows_of(reader, names);
-  std::erase_if(rows, [](const Row& row) { return !number_of(row.figures.back()); });
-  std::vector<Offer> offers;
+  std::erase_if(rows, [](const Row& row) { return !tables::number_of(row.figures.back()); });
+  std::vector<figures::Offer> offers;
   for (const Row& row : rows) {
-    offers.push_back({row.point.cost, *number_of(row.figures.back())});
+    offers.push_back({row.point.cost, *tables::number_of(row.figures.back())});
   }
-  const std::optional<std::size_t> best = best_within(offers, budget, better);
+  const std::optional<std::size_t> best = figures::best_within(offers, budget, better);
   if (offers.empty()) {
     throw sim::UserError(fmt::format("{}: no point has the figure {}", reader.file().string(), metric));
   }
   if (!best) {
-    const auto by_cost = [](const Offer& a, const Offer& b) { return a.cost < b.cost; };
+    const auto by_cost = [](const figures::Offer& a, const figures::Offer& b) { return a.cost < b.cost; };
     throw sim::UserError(
         fmt::format("{}: no point costs at most {:g}; the cheapest that has the figure {} costs {:g}",
                     reader.file().string(), budget.value_or(0.0), metric,
@@ -129,7 +131,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   }
   std::vector<Row> front;
   std::vector<Row> marked;  // with whether it is the best
-  for (const std::size_t index : pareto_front(offers, better)) {
+  for (const std::size_t index : figures::pareto_front(offers, better)) {
     front.push_back(rows[index]);
     marked.push_back(rows[index]);
     const bool chosen =
@@ -140,7 +142,9 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   marked_names.emplace_back("best");
   // Times that differ in their fourth digit must not look alike.
   const bool time = figure.unit == "ps";
-  const auto shown = [&figure](const Cell& cell) { return figure_text(cell, figure.unit, "-"); };
+  const auto shown = [&figure](const tables::Cell& cell) {
+    return tables::figure_text(cell, figure.unit, "-");
+  };
   std::string text = fmt::format("best {}{}: {} at a cost of {:g}:", metric,
                                  budget ? fmt::format(" within {:g}", *budget) : std::string(),
                                  shown(rows[*best].figures.back()), offers[*best].cost);
@@ -148,7 +152,8 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
     text +=
         (axis == 0 ? " " : ", ") + names[axis] + " = " + axis_text(names[axis], rows[*best].figures[axis]);
   }
-  Table table = table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
+  tables::Table table =
+      table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
   for (Row& row : front) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
       if (!is_boolean_axis(names[axis])) {  // a table puts these in words itself
@@ -159,8 +164,8 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
       row.figures.back() = shown(row.figures.back());
     }
   }
-  text += "\n\n" + studies::text_of(table_of("best", table.title(), names, front));
+  text += "\n\n" + studies::tables::text_of(table_of("best", table.title(), names, front));
   return {std::move(table), std::move(text)};
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -7,18 +7,18 @@
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// "points": a row for each point of the present plan whose machine has been timed: its axes, its cost, the
 /// derived figures, and all counters. Its columns have the names and units of the store's; a key that is true
 /// or false is a boolean.
-[[nodiscard]] Table points_table(const SweepReader& reader);
+[[nodiscard]] tables::Table points_table(const SweepReader& reader);
 
 /// Which points are worth their price.
 struct BestPoints {
   /// "best": the points that no other beats in cost and metric, ascending by cost; its last column marks the
   /// best within the budget.
-  Table front;
+  tables::Table front;
   std::string text;  ///< for people: the best within the budget, and the front
 };
 
@@ -27,4 +27,4 @@ struct BestPoints {
 [[nodiscard]] BestPoints best_points(const SweepReader& reader, const std::string& metric,
                                      std::optional<double> budget);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,24 +5,24 @@
 #include "studies/sweep/plan/axis_text.h"
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
-StoreColumn column_of(const std::string& table, const FigureEntry& figure) {
+StoreColumn column_of(const std::string& table, const figures::FigureEntry& figure) {
   return {table,
           figure.name,
           figure.unit,
           figure.description,
-          std::string(merge_names.at(static_cast<std::size_t>(figure.merge))),
-          std::string(better_names.at(static_cast<std::size_t>(figure.better))),
+          std::string(figures::merge_names.at(static_cast<std::size_t>(figure.merge))),
+          std::string(figures::better_names.at(static_cast<std::size_t>(figure.better))),
           figure.formula ? figure.formula->text() : std::string()};
 }
 
 // The figures of the view summary: those by which points are told apart at a glance.
-std::vector<FigureEntry> summary_figures() {
-  std::vector<FigureEntry> figures = {figure_named("end"), figure_named("nodes")};
-  figures.insert(figures.end(), derived_figures().begin(), derived_figures().end());
+std::vector<figures::FigureEntry> summary_figures() {
+  std::vector<figures::FigureEntry> figures = {figures::figure_named("end"), figures::figure_named("nodes")};
+  figures.insert(figures.end(), figures::derived_figures().begin(), figures::derived_figures().end());
   return figures;
 }
 
@@ -90,7 +90,7 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
       {"histograms", "count", "1", "waits in the bucket"},
       {"results", "machine", "", "the machine"},
       {"results", "checksum", "", "of the row and its histograms"}};
-  for (const FigureEntry& figure : counted_figures()) {
+  for (const figures::FigureEntry& figure : figures::counted_figures()) {
     all.push_back(column_of("results", figure));
   }
   append(all, {{"frame_results", "frame", "", "the frame"},
@@ -99,12 +99,12 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
                {"frame_results", "image_hash", "", "of the bits of all pixels, FNV-1a"},
                {"frame_results", "hit_hash", "", "of the outcome of every ray"},
                {"frame_results", "checksum", "", "of the row and its notes"}});
-  for (const FigureEntry& figure : frame_figures()) {
+  for (const figures::FigureEntry& figure : run::frame_figures()) {
     all.push_back(column_of("frame_results", figure));
   }
   append(all, point_columns("points", axes));
   append(all, point_columns("summary", axes));
-  for (const FigureEntry& figure : summary_figures()) {
+  for (const figures::FigureEntry& figure : summary_figures()) {
     all.push_back(column_of("summary", figure));
   }
   return all;
@@ -114,13 +114,13 @@ std::string summary_view(std::span<const std::string> axes) {
   std::string sql = "CREATE VIEW summary AS SELECT ";
   std::string separator;
   for (const StoreColumn& column : point_columns("points", axes)) {
-    sql += separator + "p." + sql_name(column.name) + " AS " + sql_name(column.name);
+    sql += separator + "p." + tables::sql_name(column.name) + " AS " + tables::sql_name(column.name);
     separator = ", ";
   }
   // r is the result of the point's machine, b of its base, c of the machine that all are compared with.
-  for (const FigureEntry& figure : summary_figures()) {
-    sql += ", " + (figure.formula ? figure.formula->sql() : "r." + sql_name(figure.name)) + " AS " +
-           sql_name(figure.name);
+  for (const figures::FigureEntry& figure : summary_figures()) {
+    sql += ", " + (figure.formula ? figure.formula->sql() : "r." + tables::sql_name(figure.name)) + " AS " +
+           tables::sql_name(figure.name);
   }
   return sql +
          " FROM points p LEFT JOIN results r ON r.machine = p.machine LEFT JOIN results b ON b.machine = "
@@ -128,4 +128,4 @@ std::string summary_view(std::span<const std::string> axes) {
          "LEFT JOIN results c ON c.machine = (SELECT machine FROM compare)";
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 struct StoreColumn {
   std::string table;
@@ -23,4 +23,4 @@ struct StoreColumn {
 /// The SQL that makes the view `summary`: points with what follows from their counters.
 [[nodiscard]] std::string summary_view(std::span<const std::string> axes);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -13,7 +13,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -94,4 +94,4 @@ StoreLock::StoreLock(const std::filesystem::path& store) : file_(store.string() 
 
 StoreLock::~StoreLock() { unlink(file_.c_str()); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

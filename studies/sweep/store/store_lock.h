@@ -6,7 +6,7 @@
 
 #include "sim/descriptor.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Holds the file `store` + ".lock" while it lives. The lock is the operating system's (flock), so it ends
 /// with the process that holds it, however that ends; the text in the file is only for people.
@@ -27,4 +27,4 @@ class StoreLock {
 /// The name of this computer, as it stands in locks and stores.
 [[nodiscard]] std::string host_name();
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -12,7 +12,7 @@
 #include "studies/sweep/store/store_schema.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -20,15 +20,16 @@ namespace {
 // sweep share nearly all of them.
 class Settings {
  public:
-  explicit Settings(SqliteConnection& connection)
-      : add_setting_(connection, insert_sql("settings", 3)),
-        add_section_(connection, insert_sql("sections", 2)) {
-    SqliteStatement settings(connection, "SELECT id, key, value FROM settings");
+  explicit Settings(tables::SqliteConnection& connection)
+      : add_setting_(connection, tables::insert_sql("settings", 3)),
+        add_section_(connection, tables::insert_sql("sections", 2)) {
+    tables::SqliteStatement settings(connection, "SELECT id, key, value FROM settings");
     while (settings.next()) {
       settings_[{settings.text(1), settings.text(2)}] = settings.integer(0);
       next_setting_ = std::max(next_setting_, settings.integer(0) + 1);
     }
-    SqliteStatement sections(connection, "SELECT section, setting FROM sections ORDER BY section, setting");
+    tables::SqliteStatement sections(connection,
+                                     "SELECT section, setting FROM sections ORDER BY section, setting");
     std::map<std::int64_t, std::vector<std::int64_t>> known;
     while (sections.next()) {
       known[sections.integer(0)].push_back(sections.integer(1));
@@ -84,8 +85,8 @@ class Settings {
     return at->second;
   }
 
-  SqliteStatement add_setting_;
-  SqliteStatement add_section_;
+  tables::SqliteStatement add_setting_;
+  tables::SqliteStatement add_section_;
   std::map<std::pair<std::string, std::string>, std::int64_t> settings_;
   std::map<std::vector<std::int64_t>, std::int64_t> sections_;
   SettingsPool pool_;  // of what is not shared yet: parts are known by their addresses
@@ -97,11 +98,11 @@ class Settings {
 // The ids of frames or machines, in their order. Calls `add` for those whose keys the table lacks, with a new
 // id.
 template <class Wanted, class Add>
-std::vector<std::int64_t> enter(SqliteConnection& connection, const std::string& table,
+std::vector<std::int64_t> enter(tables::SqliteConnection& connection, const std::string& table,
                                 const std::vector<Wanted>& all, const Add& add) {
   std::unordered_map<std::string, std::int64_t> known;
   std::int64_t next = 1;
-  SqliteStatement rows(connection, "SELECT id, key FROM " + table);
+  tables::SqliteStatement rows(connection, "SELECT id, key FROM " + table);
   while (rows.next()) {
     known[rows.text(1)] = rows.integer(0);
     next = std::max(next, rows.integer(0) + 1);
@@ -118,55 +119,57 @@ std::vector<std::int64_t> enter(SqliteConnection& connection, const std::string&
   return ids;
 }
 
-void add_sections(SqliteStatement& insert, std::int64_t whose, const std::vector<std::int64_t>& sections) {
+void add_sections(tables::SqliteStatement& insert, std::int64_t whose,
+                  const std::vector<std::int64_t>& sections) {
   for (const std::int64_t section : sections) {
     insert.run({whose, section});
   }
 }
 
-std::vector<std::int64_t> enter_frames(SqliteConnection& connection, const SweepPlan& plan,
+std::vector<std::int64_t> enter_frames(tables::SqliteConnection& connection, const SweepPlan& plan,
                                        Settings& settings) {
-  SqliteStatement insert(connection, insert_sql("frames", 2));
-  SqliteStatement section(connection, insert_sql("frame_sections", 2));
+  tables::SqliteStatement insert(connection, tables::insert_sql("frames", 2));
+  tables::SqliteStatement section(connection, tables::insert_sql("frame_sections", 2));
   return enter(connection, "frames", plan.frames, [&](std::int64_t id, const SweepFrame& frame) {
     insert.run({id, frame.key});
     add_sections(section, id, settings.sections_of(settings.shared(frame.settings)));
   });
 }
 
-std::vector<std::int64_t> enter_machines(SqliteConnection& connection, const SweepPlan& plan,
+std::vector<std::int64_t> enter_machines(tables::SqliteConnection& connection, const SweepPlan& plan,
                                          const std::vector<std::int64_t>& frames, Settings& settings) {
-  SqliteStatement insert(connection, insert_sql("machines", 3));
-  SqliteStatement section(connection, insert_sql("machine_sections", 2));
+  tables::SqliteStatement insert(connection, tables::insert_sql("machines", 3));
+  tables::SqliteStatement section(connection, tables::insert_sql("machine_sections", 2));
   return enter(connection, "machines", plan.machines, [&](std::int64_t id, const SweepMachine& machine) {
     insert.run({id, machine.key, frames.at(machine.frame)});
     add_sections(section, id, settings.sections_of(machine.settings));
   });
 }
 
-Cell axis_cell(const sim::Value& value) {
+tables::Cell axis_cell(const sim::Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) {
     return std::int64_t{*flag ? 1 : 0};
   }
-  return std::visit([](const auto& number_or_text) { return Cell(number_or_text); }, value);
+  return std::visit([](const auto& number_or_text) { return tables::Cell(number_or_text); }, value);
 }
 
-void enter_points(SqliteConnection& connection, const SweepPlan& plan,
+void enter_points(tables::SqliteConnection& connection, const SweepPlan& plan,
                   const std::vector<std::int64_t>& machines) {
   create_points(connection, plan);
-  SqliteStatement insert(connection, insert_sql("points", 4 + plan.axes.size()));
+  tables::SqliteStatement insert(connection, tables::insert_sql("points", 4 + plan.axes.size()));
   std::int64_t ordinal = 0;
   for (const SweepPoint& point : plan.points) {
     sim::ensure(point.values.size() == plan.axes.size(), "a point of a sweep lacks a value");
-    std::vector<Cell> cells = {ordinal++, machines.at(point.machine), machines.at(point.base), point.cost};
+    std::vector<tables::Cell> cells = {ordinal++, machines.at(point.machine), machines.at(point.base),
+                                       point.cost};
     std::transform(point.values.begin(), point.values.end(), std::back_inserter(cells), axis_cell);
     insert.run(cells);
   }
 }
 
-void enter_provenance(SqliteConnection& connection, const SweepPlan& plan) {
+void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& plan) {
   connection.execute("DELETE FROM provenance");
-  SqliteStatement insert(connection, insert_sql("provenance", 2));
+  tables::SqliteStatement insert(connection, tables::insert_sql("provenance", 2));
   std::string axes;
   for (const std::string& axis : plan.axes) {
     axes += (axes.empty() ? "" : ", ") + axis;
@@ -181,7 +184,7 @@ void enter_provenance(SqliteConnection& connection, const SweepPlan& plan) {
 
 }  // namespace
 
-StoreIds enter_plan(SqliteConnection& connection, const SweepPlan& plan) {
+StoreIds enter_plan(tables::SqliteConnection& connection, const SweepPlan& plan) {
   Settings settings(connection);
   StoreIds ids;
   ids.frames = enter_frames(connection, plan, settings);
@@ -189,10 +192,11 @@ StoreIds enter_plan(SqliteConnection& connection, const SweepPlan& plan) {
   enter_points(connection, plan, ids.machines);
   connection.execute("DELETE FROM compare");
   if (plan.compare) {
-    SqliteStatement(connection, insert_sql("compare", 1)).run({ids.machines.at(*plan.compare)});
+    tables::SqliteStatement(connection, tables::insert_sql("compare", 1))
+        .run({ids.machines.at(*plan.compare)});
   }
   enter_provenance(connection, plan);
   return ids;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

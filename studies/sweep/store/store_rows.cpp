@@ -8,24 +8,25 @@
 #include "sim/statistics.h"
 #include "studies/sweep/store/store_schema.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
 using Counters = std::vector<std::optional<std::int64_t>>;
 
 // Columns are found by their names: another version may have had others.
-std::vector<int> places_of(const SqliteStatement& row, std::span<const FigureEntry> columns) {
+std::vector<int> places_of(const tables::SqliteStatement& row,
+                           std::span<const figures::FigureEntry> columns) {
   const std::vector<std::string> names = row.column_names();
   std::vector<int> places;
-  for (const FigureEntry& column : columns) {
+  for (const figures::FigureEntry& column : columns) {
     const auto at = std::find(names.begin(), names.end(), column.name);
     places.push_back(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
   }
   return places;
 }
 
-Counters counters_at(const SqliteStatement& row, const std::vector<int>& places) {
+Counters counters_at(const tables::SqliteStatement& row, const std::vector<int>& places) {
   Counters counters;
   counters.reserve(places.size());
   for (const int place : places) {
@@ -36,8 +37,8 @@ Counters counters_at(const SqliteStatement& row, const std::vector<int>& places)
 
 constexpr std::monostate no_checksum_yet;
 
-Cell counter_cell(const std::optional<std::int64_t>& counter) {
-  Cell cell;
+tables::Cell counter_cell(const std::optional<std::int64_t>& counter) {
+  tables::Cell cell;
   if (counter) {
     cell = *counter;
   }
@@ -53,17 +54,20 @@ bool is_usual(const SweepHistogram::Bucket& bucket) {
 
 }  // namespace
 
-RowWriter::RowWriter(SqliteConnection& connection)
-    : result_(connection, insert_sql("results", counted_figures().size() + first_result_counter)),
-      bucket_(connection, insert_sql("wait_buckets", 5)),
-      frame_(connection, insert_sql("frame_results", frame_figures().size() + first_frame_counter)),
-      note_(connection, insert_sql("frame_notes", 3)),
+RowWriter::RowWriter(tables::SqliteConnection& connection)
+    : result_(connection,
+              tables::insert_sql("results", figures::counted_figures().size() + first_result_counter)),
+      bucket_(connection, tables::insert_sql("wait_buckets", 5)),
+      frame_(connection,
+             tables::insert_sql("frame_results", run::frame_figures().size() + first_frame_counter)),
+      note_(connection, tables::insert_sql("frame_notes", 3)),
       machine_sums_(connection, machine_results),
       frame_sums_(connection, frame_results) {}
 
 void RowWriter::add(std::int64_t machine, const SweepRow& row) {
-  sim::ensure(row.counters.size() == counted_figures().size(), "a row has another number of counters");
-  std::vector<Cell> cells = {machine, no_checksum_yet};
+  sim::ensure(row.counters.size() == figures::counted_figures().size(),
+              "a row has another number of counters");
+  std::vector<tables::Cell> cells = {machine, no_checksum_yet};
   std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
   result_.run(cells);
   const auto names = sweep_histogram_names();
@@ -80,8 +84,10 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
 }
 
 void RowWriter::add(std::int64_t frame, const FrameRow& row) {
-  sim::ensure(row.counters.size() == frame_figures().size(), "a frame's row has another number of counters");
-  std::vector<Cell> cells = {frame, row.scene, row.scene_hash, row.image_hash, row.hit_hash, no_checksum_yet};
+  sim::ensure(row.counters.size() == run::frame_figures().size(),
+              "a frame's row has another number of counters");
+  std::vector<tables::Cell> cells = {frame,          row.scene,    row.scene_hash,
+                                     row.image_hash, row.hit_hash, no_checksum_yet};
   std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
   frame_.run(cells);
   std::int64_t ordinal = 0;
@@ -91,7 +97,7 @@ void RowWriter::add(std::int64_t frame, const FrameRow& row) {
   frame_sums_.seal(frame);
 }
 
-RowReader::RowReader(SqliteConnection& connection)
+RowReader::RowReader(tables::SqliteConnection& connection)
     : result_(connection, "SELECT * FROM results WHERE machine = ?"),
       buckets_(connection,
                "SELECT w.name, h.lowest, COALESCE(h.highest, b.highest), h.count FROM wait_buckets h "
@@ -99,8 +105,8 @@ RowReader::RowReader(SqliteConnection& connection)
                "WHERE h.machine = ? ORDER BY h.wait, h.lowest"),
       frame_(connection, "SELECT * FROM frame_results WHERE frame = ?"),
       notes_(connection, "SELECT note FROM frame_notes WHERE frame = ? ORDER BY ordinal"),
-      result_places_(places_of(result_, counted_figures())),
-      frame_places_(places_of(frame_, frame_figures())) {}
+      result_places_(places_of(result_, figures::counted_figures())),
+      frame_places_(places_of(frame_, run::frame_figures())) {}
 
 std::optional<SweepRow> RowReader::find_machine(std::int64_t machine) {
   if (!result_.with({machine}).next()) {
@@ -134,4 +140,4 @@ std::optional<FrameRow> RowReader::find_frame(std::int64_t frame) {
   return row;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

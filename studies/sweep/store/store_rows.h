@@ -9,21 +9,21 @@
 #include "studies/sweep/store/store_sums.h"
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Adds rows with their checksums; its statements are prepared once. Within a transaction.
 class RowWriter {
  public:
-  explicit RowWriter(SqliteConnection& connection);
+  explicit RowWriter(tables::SqliteConnection& connection);
 
   void add(std::int64_t machine, const SweepRow& row);
   void add(std::int64_t frame, const FrameRow& row);
 
  private:
-  SqliteStatement result_;
-  SqliteStatement bucket_;
-  SqliteStatement frame_;
-  SqliteStatement note_;
+  tables::SqliteStatement result_;
+  tables::SqliteStatement bucket_;
+  tables::SqliteStatement frame_;
+  tables::SqliteStatement note_;
   RowSums machine_sums_;
   RowSums frame_sums_;
 };
@@ -31,19 +31,19 @@ class RowWriter {
 /// Reads rows; its statements are prepared once.
 class RowReader {
  public:
-  explicit RowReader(SqliteConnection& connection);
+  explicit RowReader(tables::SqliteConnection& connection);
 
   /// The row, if it is there. A counter that the store has no column for has no value.
   [[nodiscard]] std::optional<SweepRow> find_machine(std::int64_t machine);
   [[nodiscard]] std::optional<FrameRow> find_frame(std::int64_t frame);
 
  private:
-  SqliteStatement result_;
-  SqliteStatement buckets_;
-  SqliteStatement frame_;
-  SqliteStatement notes_;
+  tables::SqliteStatement result_;
+  tables::SqliteStatement buckets_;
+  tables::SqliteStatement frame_;
+  tables::SqliteStatement notes_;
   std::vector<int> result_places_;  // of each counter: its column; -1: none
   std::vector<int> frame_places_;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -15,7 +15,7 @@
 #include "studies/sweep/store/store_columns.h"
 #include "studies/version.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -67,23 +67,24 @@ CREATE VIEW histograms AS
   FROM wait_buckets h JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest;
 )";
 
-bool has_columns(SqliteConnection& connection, const std::string& table, std::size_t first,
-                 std::span<const FigureEntry> columns) {
+bool has_columns(tables::SqliteConnection& connection, const std::string& table, std::size_t first,
+                 std::span<const figures::FigureEntry> columns) {
   std::vector<std::string> names;  // none when there is no such table
-  SqliteStatement rows(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
+  tables::SqliteStatement rows(connection, "SELECT name FROM pragma_table_info(?) ORDER BY cid");
   rows.with({table});
   while (rows.next()) {
     names.push_back(rows.text(0));
   }
   return names.size() == first + columns.size() &&
-         std::equal(columns.begin(), columns.end(), names.begin() + static_cast<std::ptrdiff_t>(first),
-                    [](const FigureEntry& column, const std::string& name) { return name == column.name; });
+         std::equal(
+             columns.begin(), columns.end(), names.begin() + static_cast<std::ptrdiff_t>(first),
+             [](const figures::FigureEntry& column, const std::string& name) { return name == column.name; });
 }
 
-std::string counters_sql(std::span<const FigureEntry> columns) {
+std::string counters_sql(std::span<const figures::FigureEntry> columns) {
   std::string sql;
-  for (const FigureEntry& column : columns) {
-    sql += ", " + sql_name(column.name) + " INTEGER";
+  for (const figures::FigureEntry& column : columns) {
+    sql += ", " + tables::sql_name(column.name) + " INTEGER";
   }
   return sql;
 }
@@ -129,23 +130,23 @@ const std::filesystem::path& check_store_file(const std::filesystem::path& file)
   // A log or journal beside the file may hold what it lacks. Pages of 65536 bytes are written as 1.
   const std::uint64_t page = header.pageSizeBytes == 1 ? 65536 : header.pageSizeBytes;
   const std::uint64_t expected = page * (header.databaseSizePages & 0xffffffffU);
-  if (bytes < expected && !has_log_or_journal(file)) {
+  if (bytes < expected && !tables::has_log_or_journal(file)) {
     throw sim::UserError(file.string() + ": is damaged: it has " + std::to_string(bytes) + " bytes of " +
                          std::to_string(expected) + std::string(what_to_do));
   }
   return file;
 }
 
-bool is_empty_database(SqliteConnection& connection) {
+bool is_empty_database(tables::SqliteConnection& connection) {
   return connection.value<std::int64_t>("PRAGMA application_id") == 0 &&
          connection.value<std::int64_t>("SELECT COUNT(*) FROM sqlite_schema") == 0;
 }
 
-std::optional<std::string> value_of(SqliteConnection& connection, const std::string& what) {
+std::optional<std::string> value_of(tables::SqliteConnection& connection, const std::string& what) {
   return connection.value<std::string>("SELECT value FROM store WHERE what = '" + what + "'");
 }
 
-std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file) {
+std::int64_t check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file) {
   if (connection.value<std::int64_t>("PRAGMA application_id") != application) {
     throw sim::UserError(file.string() + ": is a database, but not the store of a sweep" +
                          std::string(what_to_do));
@@ -159,7 +160,7 @@ std::int64_t check_store_format(SqliteConnection& connection, const std::filesys
   return found;
 }
 
-void check_store_version(SqliteConnection& connection, const std::filesystem::path& file) {
+void check_store_version(tables::SqliteConnection& connection, const std::filesystem::path& file) {
   const std::string found = value_of(connection, "version").value_or("");
   if (found != version) {
     throw sim::UserError(file.string() + ": was written by version " + found + ", but this is version " +
@@ -169,55 +170,55 @@ void check_store_version(SqliteConnection& connection, const std::filesystem::pa
   // Stores of older formats can be read but not written. The build holds a hash of the sources, because a
   // program that was changed may give other results.
   if (connection.value<std::int64_t>("PRAGMA user_version") != format ||
-      value_of(connection, "build") != build_of_program() ||
-      !has_columns(connection, "results", first_result_counter, counted_figures()) ||
-      !has_columns(connection, "frame_results", first_frame_counter, frame_figures())) {
+      value_of(connection, "build") != host::build_of_program() ||
+      !has_columns(connection, "results", first_result_counter, figures::counted_figures()) ||
+      !has_columns(connection, "frame_results", first_frame_counter, run::frame_figures())) {
     throw sim::UserError(file.string() + ": was written by another build of version " + found +
                          ", whose results could differ" + std::string(what_to_do));
   }
 }
 
-void create_store(SqliteConnection& connection) {
+void create_store(tables::SqliteConnection& connection) {
   connection.execute("PRAGMA application_id = " + std::to_string(application) +
                      "; PRAGMA user_version = " + std::to_string(format));
   connection.execute(fixed_tables);
   connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" +
-                     counters_sql(counted_figures()) + ")");
+                     counters_sql(figures::counted_figures()) + ")");
   connection.execute(
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
       "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
-      counters_sql(frame_figures()) + ")");
-  SqliteStatement store(connection, insert_sql("store", 2));
+      counters_sql(run::frame_figures()) + ")");
+  tables::SqliteStatement store(connection, tables::insert_sql("store", 2));
   store.run({"format", std::to_string(format)});
   store.run({"version", std::string(version)});
-  store.run({"build", std::string(build_of_program())});
-  SqliteStatement wait(connection, insert_sql("waits", 2));
+  store.run({"build", std::string(host::build_of_program())});
+  tables::SqliteStatement wait(connection, tables::insert_sql("waits", 2));
   std::int64_t number = 0;
   for (const std::string_view name : sweep_histogram_names()) {
     wait.run({number++, std::string(name)});
   }
-  SqliteStatement bucket(connection, insert_sql("buckets", 2));
+  tables::SqliteStatement bucket(connection, tables::insert_sql("buckets", 2));
   const std::size_t last = sim::LogHistogram::bucket_of(INT64_MAX);
   for (std::size_t i = 0; i <= last; ++i) {
     bucket.run({sim::LogHistogram::lowest_of(i), sim::LogHistogram::highest_of(i)});
   }
 }
 
-void create_points(SqliteConnection& connection, const SweepPlan& plan) {
+void create_points(tables::SqliteConnection& connection, const SweepPlan& plan) {
   connection.execute("DROP VIEW IF EXISTS summary; DROP TABLE IF EXISTS points; DELETE FROM columns;");
   std::string table =
       "CREATE TABLE points (ordinal INTEGER PRIMARY KEY, machine INTEGER NOT NULL, base INTEGER NOT NULL, "
       "cost REAL NOT NULL";
   for (std::size_t axis = 0; axis < plan.axes.size(); ++axis) {
-    table += ", " + sql_name(plan.axes[axis]) + " " + axis_type(plan, axis);
+    table += ", " + tables::sql_name(plan.axes[axis]) + " " + axis_type(plan, axis);
   }
   connection.execute(table + ")");
   connection.execute(summary_view(plan.axes));
-  SqliteStatement insert(connection, insert_sql("columns", 7));
+  tables::SqliteStatement insert(connection, tables::insert_sql("columns", 7));
   for (const StoreColumn& column : store_columns(plan.axes)) {
     insert.run({column.table, column.name, column.unit, column.description, column.merge, column.better,
                 column.formula});
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

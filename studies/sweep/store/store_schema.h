@@ -8,7 +8,7 @@
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Where the counters of the tables begin, after the columns that are no counters.
 inline constexpr std::size_t first_result_counter = 2;
@@ -19,23 +19,24 @@ inline constexpr std::size_t first_frame_counter = 6;
 const std::filesystem::path& check_store_file(const std::filesystem::path& file);
 
 /// Whether nothing was ever written into the database: it is new.
-[[nodiscard]] bool is_empty_database(SqliteConnection& connection);
+[[nodiscard]] bool is_empty_database(tables::SqliteConnection& connection);
 
 /// What table `store` says: of "format", "version", "build" or "checksum".
-[[nodiscard]] std::optional<std::string> value_of(SqliteConnection& connection, const std::string& what);
+[[nodiscard]] std::optional<std::string> value_of(tables::SqliteConnection& connection,
+                                                  const std::string& what);
 
 /// Its format. Throws UserError unless the database is a store of one that this program reads.
-std::int64_t check_store_format(SqliteConnection& connection, const std::filesystem::path& file);
+std::int64_t check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
 /// Throws UserError unless this program may add results to the store: it must be of this version and of the
 /// newest format.
-void check_store_version(SqliteConnection& connection, const std::filesystem::path& file);
+void check_store_version(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
 /// Makes the tables that stay. Within a transaction.
-void create_store(SqliteConnection& connection);
+void create_store(tables::SqliteConnection& connection);
 
 /// Makes table points, the view summary and table columns anew for the axes of a plan; points is left empty.
 /// Within a transaction.
-void create_points(SqliteConnection& connection, const SweepPlan& plan);
+void create_points(tables::SqliteConnection& connection, const SweepPlan& plan);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

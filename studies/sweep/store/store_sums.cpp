@@ -11,7 +11,7 @@
 #include "studies/sweep/plan/digest.h"
 #include "studies/sweep/store/store_schema.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -26,7 +26,7 @@ constexpr std::string_view plan_tables[] = {"provenance", "columns",        "set
 }
 
 // A letter for its type, and its value.
-void add_cell(ByteWriter& bytes, const Cell& cell) {
+void add_cell(ByteWriter& bytes, const tables::Cell& cell) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
     bytes.write('i', *integer);
   } else if (const auto* real = std::get_if<double>(&cell)) {
@@ -38,7 +38,7 @@ void add_cell(ByteWriter& bytes, const Cell& cell) {
   }
 }
 
-void add_rows(Digest& digest, SqliteStatement& rows) {
+void add_rows(Digest& digest, tables::SqliteStatement& rows) {
   ByteWriter bytes;
   while (rows.next()) {
     bytes.write('r', 'o', 'w');
@@ -49,11 +49,11 @@ void add_rows(Digest& digest, SqliteStatement& rows) {
   }
 }
 
-std::string sum_of_plan(SqliteConnection& connection) {
+std::string sum_of_plan(tables::SqliteConnection& connection) {
   Digest digest;
   const auto add = [&](const std::string& sql) {
     digest.add(sql);
-    SqliteStatement rows(connection, sql);
+    tables::SqliteStatement rows(connection, sql);
     add_rows(digest, rows);
   };
   // Rows are read in the order of their table: an index could have another order.
@@ -69,7 +69,7 @@ std::string sum_of_plan(SqliteConnection& connection) {
 
 }  // namespace
 
-RowSums::RowSums(SqliteConnection& connection, const ResultTable& table)
+RowSums::RowSums(tables::SqliteConnection& connection, const ResultTable& table)
     : connection_(connection),
       table_(table),
       row_(connection, fmt::format("SELECT * FROM {} WHERE {} = ?", table.name, table.id)),
@@ -80,7 +80,7 @@ RowSums::RowSums(SqliteConnection& connection, const ResultTable& table)
   }
 }
 
-Cell RowSums::sum_of(const SqliteStatement& row) {
+tables::Cell RowSums::sum_of(const tables::SqliteStatement& row) {
   ByteWriter bytes;
   for (int i = 0; i < row.columns(); ++i) {
     if (i != checksum_) {
@@ -95,13 +95,13 @@ Cell RowSums::sum_of(const SqliteStatement& row) {
 
 void RowSums::seal(std::int64_t id) {
   sim::ensure(row_.with({id}).next(), "a row that has no checksum is not there");
-  const Cell sum = sum_of(row_);
+  const tables::Cell sum = sum_of(row_);
   row_.reset();
   seal_.run({sum, id});
 }
 
 void RowSums::check(const std::filesystem::path& file) {
-  SqliteStatement rows(connection_, fmt::format("SELECT * FROM {}", table_.name));
+  tables::SqliteStatement rows(connection_, fmt::format("SELECT * FROM {}", table_.name));
   while (rows.next()) {
     if (checksum_ < 0 || rows.cell(checksum_) != sum_of(rows)) {
       fail(file,
@@ -110,12 +110,13 @@ void RowSums::check(const std::filesystem::path& file) {
   }
 }
 
-void seal_plan(SqliteConnection& connection) {
-  SqliteStatement(connection, "INSERT OR REPLACE INTO store VALUES ('checksum', ?)")
+void seal_plan(tables::SqliteConnection& connection) {
+  tables::SqliteStatement(connection, "INSERT OR REPLACE INTO store VALUES ('checksum', ?)")
       .run({sum_of_plan(connection)});
 }
 
-void check_whole(SqliteConnection& connection, const std::filesystem::path& file, std::int64_t format) {
+void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file,
+                 std::int64_t format) {
   if (const auto found = connection.value<std::string>("PRAGMA integrity_check(1)"); found != "ok") {
     fail(file, found.value_or("it cannot be checked"));
   }
@@ -129,4 +130,4 @@ void check_whole(SqliteConnection& connection, const std::filesystem::path& file
   RowSums(connection, frame_results).check(file);
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

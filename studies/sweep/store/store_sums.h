@@ -7,7 +7,7 @@
 
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// A table of results, and what belongs to each of its rows: the histograms of a machine, the notes of a
 /// frame.
@@ -26,7 +26,7 @@ inline constexpr ResultTable frame_results = {
 /// their types, and what belongs to the row. So a program that has other counters can check a store, too.
 class RowSums {
  public:
-  RowSums(SqliteConnection& connection, const ResultTable& table);
+  RowSums(tables::SqliteConnection& connection, const ResultTable& table);
 
   /// Writes the checksum of the row with this id, which the open transaction has written.
   void seal(std::int64_t id);
@@ -34,22 +34,23 @@ class RowSums {
   void check(const std::filesystem::path& file);
 
  private:
-  [[nodiscard]] Cell sum_of(const SqliteStatement& row);
+  [[nodiscard]] tables::Cell sum_of(const tables::SqliteStatement& row);
 
-  SqliteConnection& connection_;
+  tables::SqliteConnection& connection_;
   ResultTable table_;
-  SqliteStatement row_;
-  SqliteStatement parts_;
-  SqliteStatement seal_;
+  tables::SqliteStatement row_;
+  tables::SqliteStatement parts_;
+  tables::SqliteStatement seal_;
   int checksum_ = -1;  // the column that holds it
 };
 
 /// Writes the checksum of the plan: of all tables that hold no results and are not of the host, and of the
 /// SQL that made tables and views. Within a transaction, after the plan has been entered.
-void seal_plan(SqliteConnection& connection);
+void seal_plan(tables::SqliteConnection& connection);
 
 /// Throws UserError when the store is damaged: when its pages do not fit together (PRAGMA integrity_check),
 /// or a checksum is not that of the values. A store of format 1 has no checksums.
-void check_whole(SqliteConnection& connection, const std::filesystem::path& file, std::int64_t format);
+void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file,
+                 std::int64_t format);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

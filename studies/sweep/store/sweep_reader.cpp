@@ -8,7 +8,7 @@
 #include "studies/sweep/store/store_sums.h"
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -27,8 +27,8 @@ const std::filesystem::path& existing_store(const std::filesystem::path& file) {
   return check_store_file(file);
 }
 
-std::vector<std::string> columns_of(SqliteConnection& connection, const std::string& table) {
-  return SqliteStatement(connection, "SELECT * FROM " + table).column_names();
+std::vector<std::string> columns_of(tables::SqliteConnection& connection, const std::string& table) {
+  return tables::SqliteStatement(connection, "SELECT * FROM " + table).column_names();
 }
 
 }  // namespace
@@ -38,12 +38,12 @@ bool is_begun(const std::filesystem::path& store) {
   if (std::filesystem::status(store, error).type() == std::filesystem::file_type::not_found) {
     return false;
   }
-  SqliteConnection connection(existing_store(store), SqliteConnection::Access::read);
+  tables::SqliteConnection connection(existing_store(store), tables::SqliteConnection::Access::read);
   return !is_empty_database(connection);
 }
 
 SweepReader::SweepReader(const std::filesystem::path& file)
-    : connection_(existing_store(file), SqliteConnection::Access::read), file_(file) {
+    : connection_(existing_store(file), tables::SqliteConnection::Access::read), file_(file) {
   connection_.execute("BEGIN");  // from here on all reads are of one instant
   if (is_empty_database(connection_)) {
     throw sim::UserError(file.string() +
@@ -72,8 +72,9 @@ SweepReader::SweepReader(const std::filesystem::path& file)
 
 std::vector<StoredPoint> SweepReader::points() const {
   std::vector<StoredPoint> points;
-  for_each_point(
-      {}, [&](const StoredPoint& point, std::span<const Cell> /*figures*/) { points.push_back(point); });
+  for_each_point({}, [&](const StoredPoint& point, std::span<const tables::Cell> /*figures*/) {
+    points.push_back(point);
+  });
   return points;
 }
 
@@ -83,7 +84,7 @@ std::optional<std::int64_t> SweepReader::compare() const {
 
 std::vector<std::string> SweepReader::keys(const std::string& sql) const {
   std::vector<std::string> found;
-  SqliteStatement statement(connection_, sql);
+  tables::SqliteStatement statement(connection_, sql);
   while (statement.next()) {
     found.push_back(statement.text(0));
   }
@@ -104,7 +105,7 @@ std::optional<SweepRow> SweepReader::read_result(std::int64_t machine) const {
 }
 
 std::optional<FrameRow> SweepReader::read_frame(std::int64_t machine) const {
-  SqliteStatement row(connection_, "SELECT frame FROM machines WHERE id = ?");
+  tables::SqliteStatement row(connection_, "SELECT frame FROM machines WHERE id = ?");
   return row.with({machine}).next() ? rows_->find_frame(row.integer(0)) : std::nullopt;
 }
 
@@ -119,10 +120,10 @@ std::vector<std::pair<std::string, std::string>> SweepReader::settings(std::int6
 
 void SweepReader::for_each_point(
     std::span<const std::string> names,
-    const std::function<void(const StoredPoint&, std::span<const Cell>)>& visit) const {
+    const std::function<void(const StoredPoint&, std::span<const tables::Cell>)>& visit) const {
   std::string sql = "SELECT s.ordinal, s.machine, s.base, s.cost, r.machine IS NOT NULL";
   for (const std::string& axis : axes_) {
-    sql += ", s." + sql_name(axis);
+    sql += ", s." + tables::sql_name(axis);
   }
   for (const std::string& name : names) {
     const auto at = std::find(figures_.begin(), figures_.end(), name);
@@ -131,27 +132,27 @@ void SweepReader::for_each_point(
                            sim::did_you_mean(name, figures_));
     }
     const bool in_summary = static_cast<std::size_t>(at - figures_.begin()) < summary_figures_;
-    sql += (in_summary ? ", s." : ", r.") + sql_name(name);
+    sql += (in_summary ? ", s." : ", r.") + tables::sql_name(name);
   }
-  SqliteStatement rows(
+  tables::SqliteStatement rows(
       connection_, sql + " FROM summary s LEFT JOIN results r ON r.machine = s.machine ORDER BY s.ordinal");
-  std::vector<Cell> cells(names.size());
+  std::vector<tables::Cell> cells(names.size());
   while (rows.next()) {
     int column = 0;
     StoredPoint point;
     point.ordinal = rows.integer(column++);
     point.machine = rows.integer(column++);
     point.base = rows.integer(column++);
-    point.cost = number_of(rows.cell(column++)).value_or(0.0);
+    point.cost = tables::number_of(rows.cell(column++)).value_or(0.0);
     point.done = rows.integer(column++) != 0;
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
       point.values.push_back(rows.cell(column++));
     }
-    for (Cell& cell : cells) {
+    for (tables::Cell& cell : cells) {
       cell = rows.cell(column++);
     }
     visit(point, cells);
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

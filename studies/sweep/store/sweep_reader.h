@@ -16,7 +16,7 @@
 #include "studies/tables/sqlite_connection.h"
 #include "studies/tables/table.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// A point of the sweep's present plan. Machines are named by their ids in the store.
 struct StoredPoint {
@@ -24,8 +24,8 @@ struct StoredPoint {
   std::int64_t machine = 0;
   std::int64_t base = 0;
   double cost = 0.0;
-  bool done = false;         ///< its machine's result is there
-  std::vector<Cell> values;  ///< one for each of SweepReader::axes()
+  bool done = false;                 ///< its machine's result is there
+  std::vector<tables::Cell> values;  ///< one for each of SweepReader::axes()
 };
 
 /// False when the file is missing or empty, as a sweep that was killed at once leaves it.
@@ -61,16 +61,17 @@ class SweepReader {
   /// Calls `visit` for each point of the plan in order, with the figures of these names; a figure has no
   /// value where the machine has no such part, has not been timed yet, or the denominator is 0. Throws
   /// UserError for an unknown name, with the nearest known one.
-  void for_each_point(std::span<const std::string> names,
-                      const std::function<void(const StoredPoint&, std::span<const Cell>)>& visit) const;
+  void for_each_point(
+      std::span<const std::string> names,
+      const std::function<void(const StoredPoint&, std::span<const tables::Cell>)>& visit) const;
 
  private:
   [[nodiscard]] std::vector<std::string> keys(const std::string& sql) const;
 
   // Reading moves SQLite's cursors.
-  mutable SqliteConnection connection_;
+  mutable tables::SqliteConnection connection_;
   mutable std::optional<RowReader> rows_;  // made once the tables are known to exist
-  mutable std::optional<SqliteStatement> settings_;
+  mutable std::optional<tables::SqliteStatement> settings_;
   std::filesystem::path file_;
   std::string version_;
   std::vector<std::string> axes_;
@@ -78,4 +79,4 @@ class SweepReader {
   std::size_t summary_figures_ = 0;  // so many of `figures_`, from the first
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

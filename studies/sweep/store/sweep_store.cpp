@@ -11,7 +11,7 @@
 #include "studies/sweep/store/store_sums.h"
 #include "studies/tables/provenance.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -23,7 +23,7 @@ SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan,
   if (held == nullptr) {
     lock_.emplace(file);
   }
-  connection_.emplace(check_store_file(file), SqliteConnection::Access::write);
+  connection_.emplace(check_store_file(file), tables::SqliteConnection::Access::write);
   const bool is_new = is_empty_database(*connection_);
   if (!is_new) {
     const std::int64_t format = check_store_format(*connection_, file);
@@ -58,16 +58,16 @@ void SweepStore::begin_log() {
 void SweepStore::begin_session() {
   session_ =
       connection_->value<std::int64_t>("SELECT COALESCE(MAX(id), 0) + 1 FROM host_sessions").value_or(1);
-  std::vector<Cell> cells = {session_, now(), Cell(), host_name(), std::int64_t{getpid()}};
-  const Table host = host_table();
+  std::vector<tables::Cell> cells = {session_, now(), tables::Cell(), host_name(), std::int64_t{getpid()}};
+  const tables::Table host = tables::host_table();
   for (const char* what : {"processor", "system", "threads"}) {
-    for (const std::vector<Cell>& row : host.rows()) {
-      if (row[0] == Cell(what)) {
+    for (const std::vector<tables::Cell>& row : host.rows()) {
+      if (row[0] == tables::Cell(what)) {
         cells.push_back(row[1]);
       }
     }
   }
-  SqliteStatement(*connection_, insert_sql("host_sessions", cells.size())).run(cells);
+  tables::SqliteStatement(*connection_, tables::insert_sql("host_sessions", cells.size())).run(cells);
 }
 
 std::vector<bool> SweepStore::done() { return done("SELECT machine FROM results", ids_.machines); }
@@ -76,7 +76,7 @@ std::vector<bool> SweepStore::frames_done() { return done("SELECT frame FROM fra
 
 std::vector<bool> SweepStore::done(const std::string& query, const std::vector<std::int64_t>& ids) {
   std::unordered_set<std::int64_t> there;
-  SqliteStatement rows(*connection_, query);
+  tables::SqliteStatement rows(*connection_, query);
   while (rows.next()) {
     there.insert(rows.integer(0));
   }
@@ -113,13 +113,14 @@ void SweepStore::add_result(std::size_t machine, const SweepRow& row, std::int64
 }
 
 void SweepStore::add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds) {
-  SqliteStatement(*connection_, insert_sql(table, 3)).run({id, session_, cpu_nanoseconds});
+  tables::SqliteStatement(*connection_, tables::insert_sql(table, 3)).run({id, session_, cpu_nanoseconds});
 }
 
 void SweepStore::close() {
   writer_.reset();
   reader_.reset();
-  SqliteStatement(*connection_, "UPDATE host_sessions SET ended = ? WHERE id = ?").run({now(), session_});
+  tables::SqliteStatement(*connection_, "UPDATE host_sessions SET ended = ? WHERE id = ?")
+      .run({now(), session_});
   connection_->execute("PRAGMA wal_checkpoint(TRUNCATE)");
   try {
     // Ends the log, without a journal as at its beginning.
@@ -131,4 +132,4 @@ void SweepStore::close() {
   lock_.reset();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

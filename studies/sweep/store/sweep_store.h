@@ -14,7 +14,7 @@
 #include "studies/sweep/store/store_rows.h"
 #include "studies/tables/sqlite_connection.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Write-ahead logged; each result is one transaction, so that a program that is killed loses the machines in
 /// flight and nothing else. One process writes it at a time; another is refused. All failures are UserErrors
@@ -49,11 +49,11 @@ class SweepStore {
   void add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds);
 
   std::optional<StoreLock> lock_;  // empty where the caller holds it; ends after the connection
-  std::optional<SqliteConnection> connection_;
+  std::optional<tables::SqliteConnection> connection_;
   std::optional<RowWriter> writer_;  // these are made when the tables are there
   std::optional<RowReader> reader_;
   StoreIds ids_;
   std::int64_t session_ = 0;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -6,10 +6,10 @@
 
 #include "processors/walk/stripped_log.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std::size_t> machines) {
-  using processors::StrippedLog;
+  using processors::walk::StrippedLog;
   std::vector<MachineBatch> batches;
   std::map<std::pair<std::size_t, std::string>, std::size_t> known;
   for (const std::size_t number : machines) {
@@ -30,4 +30,4 @@ std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std:
   return batches;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -9,7 +9,7 @@
 
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Machines of one frame with one StrippedLog::key_of.
 struct MachineBatch {
@@ -23,4 +23,4 @@ struct MachineBatch {
 [[nodiscard]] std::vector<MachineBatch> batches_of(const SweepPlan& plan,
                                                    std::span<const std::size_t> machines);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -4,7 +4,7 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 Coordinator::Coordinator(const SweepPlan& plan, SweepStore& store, Progress& progress,
                          std::function<void(std::size_t)> over, FrameCosts estimated)
@@ -93,4 +93,4 @@ std::size_t Coordinator::close_for_good() {
   return machines_ - schedule_.machines_left();
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

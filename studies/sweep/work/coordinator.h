@@ -12,7 +12,7 @@
 #include "studies/sweep/work/schedule.h"
 #include "studies/sweep/work/task_source.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Thread-safe. Each result is in the store before the call that brings it returns. As a TaskSource it gives
 /// tasks to this process, which is place 0.
@@ -52,4 +52,4 @@ class Coordinator : public TaskSource {
   bool stopped_ = false;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

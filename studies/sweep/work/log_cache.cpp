@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -26,11 +26,11 @@ struct Entry {
 
 }  // namespace
 
-std::uint64_t memory_of(const processors::WorkLog& log) {
+std::uint64_t memory_of(const processors::program::WorkLog& log) {
   std::uint64_t bytes = reserved(log.topology.nodes) + reserved(log.topology.entries) +
                         reserved(log.topology.work) + reserved(log.quadrics) + reserved(log.texture_begin) +
                         reserved(log.rows);
-  for (const processors::LogRow& row : log.rows) {
+  for (const processors::program::LogRow& row : log.rows) {
     bytes += reserved(row.words) + reserved(row.begin);
   }
   return bytes;
@@ -191,4 +191,4 @@ std::shared_ptr<const FrameLog> LogCache::take(std::size_t frame, const Trace& t
 void LogCache::drop(std::size_t frame) { table_->drop(frame); }
 std::uint64_t LogCache::in_memory() const { return table_->in_memory(); }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

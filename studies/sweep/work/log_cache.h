@@ -9,16 +9,16 @@
 #include "processors/program/work_log.h"
 #include "studies/sweep/plan/sweep_row.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// A functional run as a sweep keeps it: no image.
 struct FrameLog {
-  std::shared_ptr<const processors::WorkLog> log;
+  std::shared_ptr<const processors::program::WorkLog> log;
   FrameRow row;
 };
 
 /// Bytes of memory that a log takes, with what its vectors have in reserve.
-[[nodiscard]] std::uint64_t memory_of(const processors::WorkLog& log);
+[[nodiscard]] std::uint64_t memory_of(const processors::program::WorkLog& log);
 
 /// Holds the logs of the frames a sweep works on, by the frame's index. Thread-safe.
 ///
@@ -53,4 +53,4 @@ class LogCache {
   std::shared_ptr<Entries> table_;  ///< shared with what is in use
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <mutex>
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Thread-safe.
 class MemoryGate {
@@ -44,4 +44,4 @@ class MemoryGate {
   std::uint64_t in_use_ = 0;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -4,7 +4,7 @@
 
 #include "studies/tables/text_units.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -14,10 +14,10 @@ constexpr std::chrono::seconds between_lines(10);
 
 std::string progress_text(std::size_t machines_done, std::size_t machines, std::size_t frames_done,
                           std::size_t frames, std::optional<double> seconds_left, std::size_t width) {
-  std::string text = progress_bar(machines_done, machines, width);
+  std::string text = progress::progress_bar(machines_done, machines, width);
   text += fmt::format("{} of {} machines, {} of {} frames", machines_done, machines, frames_done, frames);
   if (seconds_left && *seconds_left >= 1.0) {
-    text += ", " + duration_text(*seconds_left) + " left";
+    text += ", " + tables::duration_text(*seconds_left) + " left";
   }
   return text;
 }
@@ -33,8 +33,8 @@ void Progress::begin(std::size_t machines, std::size_t machines_done, std::size_
     told_ = printed_ = Clock::now();
   }
   if (options_.terminal && !options_.quiet) {
-    line_.emplace(ProgressLine::Options{.out = options_.out, .first = options_.first_bar},
-                  [this] { return text(usual_bar); });
+    line_.emplace(progress::ProgressLine::Options{.out = options_.out, .first = options_.first_bar},
+                  [this] { return text(progress::usual_bar); });
   }
 }
 
@@ -78,4 +78,4 @@ void Progress::end() {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

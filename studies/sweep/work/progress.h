@@ -11,7 +11,7 @@
 
 #include "studies/progress/progress_line.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Thread-safe.
 class Progress {
@@ -47,7 +47,7 @@ class Progress {
   std::optional<double> seconds_left_;  // when the last frame or machine was done
   Clock::time_point told_;              // that time
   Clock::time_point printed_;           // of the last line where there is no terminal
-  std::optional<ProgressLine> line_;
+  std::optional<progress::ProgressLine> line_;
 };
 
 /// "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left", with a bar of `width` characters before it, if
@@ -56,4 +56,4 @@ class Progress {
                                         std::size_t frames_done, std::size_t frames,
                                         std::optional<double> seconds_left, std::size_t width);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -6,7 +6,7 @@
 #include "sim/error.h"
 #include "studies/sweep/work/batches.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
                    const std::vector<bool>& frames_done, FrameCosts estimated)
@@ -187,4 +187,4 @@ std::int64_t Schedule::tracing_of(Trace state) const {
   return cost;
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

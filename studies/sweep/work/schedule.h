@@ -7,7 +7,7 @@
 
 #include "studies/sweep/plan/sweep_plan.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// What a worker is to do.
 struct SweepTask {
@@ -99,4 +99,4 @@ class Schedule {
   double estimated_tracing_ = 0.0;  // of the frames that are traced
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

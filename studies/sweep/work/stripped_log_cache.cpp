@@ -4,12 +4,13 @@
 
 #include "sim/error.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
-std::shared_ptr<const processors::StrippedLog> StrippedLogCache::get(
-    std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
-    const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways) {
-  using processors::StrippedLog;
+std::shared_ptr<const processors::walk::StrippedLog> StrippedLogCache::get(
+    std::size_t frame, const std::shared_ptr<const processors::program::WorkLog>& log,
+    const processors::machine::MachineConfig& machine, std::size_t sharing,
+    std::span<const std::uint32_t> ways) {
+  using processors::walk::StrippedLog;
   const std::string key = StrippedLog::key_of(machine);
   if (key.empty() ||
       !pays(sharing, std::any_of(ways.begin(), ways.end(), [](auto each) { return each != 0; }))) {
@@ -42,10 +43,10 @@ std::shared_ptr<const processors::StrippedLog> StrippedLogCache::get(
   return entry->logs[static_cast<std::size_t>(wanted - entry->ways.begin())];
 }
 
-void StrippedLogCache::make(Entry& entry, const processors::WorkLog& log,
-                            const processors::MachineConfig& machine,
+void StrippedLogCache::make(Entry& entry, const processors::program::WorkLog& log,
+                            const processors::machine::MachineConfig& machine,
                             std::span<const std::uint32_t> ways) const {
-  using processors::StrippedLog;
+  using processors::walk::StrippedLog;
   std::uint64_t left = most_bytes_ / most_kept;
   entry.ways.assign(ways.begin(), ways.end());
   entry.logs = StrippedLog::make(log, machine, ways, left);
@@ -65,4 +66,4 @@ void StrippedLogCache::drop(std::size_t frame) {
   entries_.remove_if([frame](const std::shared_ptr<Entry>& entry) { return entry->frame == frame; });
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

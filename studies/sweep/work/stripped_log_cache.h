@@ -12,7 +12,7 @@
 
 #include "processors/walk/stripped_log.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Thread-safe. Keeps those used last.
 class StrippedLogCache {
@@ -24,9 +24,10 @@ class StrippedLogCache {
   /// because only `sharing` machines use the pass that strips it. The first that asks makes it together with
   /// those for `ways`, ascending, which must include the machine's; other threads that ask for one of them
   /// wait.
-  [[nodiscard]] std::shared_ptr<const processors::StrippedLog> get(
-      std::size_t frame, const std::shared_ptr<const processors::WorkLog>& log,
-      const processors::MachineConfig& machine, std::size_t sharing, std::span<const std::uint32_t> ways);
+  [[nodiscard]] std::shared_ptr<const processors::walk::StrippedLog> get(
+      std::size_t frame, const std::shared_ptr<const processors::program::WorkLog>& log,
+      const processors::machine::MachineConfig& machine, std::size_t sharing,
+      std::span<const std::uint32_t> ways);
 
   /// Says that nobody will ask for this frame's stripped logs again.
   void drop(std::size_t frame);
@@ -49,15 +50,15 @@ class StrippedLogCache {
     std::mutex making;
     bool made = false;
     std::vector<std::uint32_t> ways;
-    std::vector<std::shared_ptr<const processors::StrippedLog>> logs;  // one for each of `ways`
+    std::vector<std::shared_ptr<const processors::walk::StrippedLog>> logs;  // one for each of `ways`
   };
 
-  void make(Entry& entry, const processors::WorkLog& log, const processors::MachineConfig& machine,
-            std::span<const std::uint32_t> ways) const;
+  void make(Entry& entry, const processors::program::WorkLog& log,
+            const processors::machine::MachineConfig& machine, std::span<const std::uint32_t> ways) const;
 
   std::uint64_t most_bytes_;
   std::mutex mutex_;
   std::list<std::shared_ptr<Entry>> entries_;  // those used last are first
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -20,20 +20,20 @@
 #include "studies/run/open_frame.h"
 #include "studies/run/scene_hash.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 namespace {
 
 FrameLog trace(const SweepFrame& frame) {
-  const FrameConfig& config = frame.config;
-  const scenes::Scene scene = open_frame(config);
-  const std::uint64_t hash = scene_hash(scene);
+  const keys::FrameConfig& config = frame.config;
+  const scenes::Scene scene = run::open_frame(config);
+  const std::uint64_t hash = run::scene_hash(scene);
   if (frame.scene_hash && *frame.scene_hash != hash) {
     throw sim::KeyError(
         "scene.source",
         sim::shown(config.scene) + ": the scene has changed since the sweep was begun; begin it again");
   }
-  const FunctionalRun run = run_functional(config, scene);
+  const run::FunctionalRun run = run::run_functional(config, scene);
   return {run.frame.log, frame_row(run, hash)};
 }
 
@@ -70,24 +70,24 @@ void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
       site.logs.take(task.frame, [&] { return trace(site, site.plan.frames[task.frame]); });
   for (const std::size_t number : task.machines) {
     const SweepMachine& machine = site.plan.machines[number];
-    const std::int64_t begin = thread_cpu_nanoseconds();
+    const std::int64_t begin = host::thread_cpu_nanoseconds();
     SweepRow row;
     try {
-      const std::shared_ptr<const processors::StrippedLog> stripped =
+      const std::shared_ptr<const processors::walk::StrippedLog> stripped =
           site.strips.get(task.frame, log->log, machine.config, task.sharing, task.ways);
-      const MemoryGate::Pass pass(site.machines, processors::host_bytes(machine.config));
-      processors::ReplayOptions options;
+      const MemoryGate::Pass pass(site.machines, processors::replay::host_bytes(machine.config));
+      processors::replay::ReplayOptions options;
       options.stripped = stripped.get();
       // Rows count an event for each read, whatever the interconnect is.
       options.keep_read_events = true;
       row = sim::with_places(all_of(machine.settings), site.plan.file, [&] {
-        return sweep_row(machine.config, processors::replay(*log->log, machine.config, options));
+        return sweep_row(machine.config, processors::replay::replay(*log->log, machine.config, options));
       });
     } catch (const sim::UserError& error) {
       throw sim::UserError(std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) +
                            ")");
     }
-    source.timed(number, row, thread_cpu_nanoseconds() - begin);
+    source.timed(number, row, host::thread_cpu_nanoseconds() - begin);
   }
 }
 
@@ -143,4 +143,4 @@ void work_together(SweepSite& site, TaskSource& source, unsigned workers) {
   }
 }
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

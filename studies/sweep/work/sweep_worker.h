@@ -10,7 +10,7 @@
 #include "studies/sweep/work/stripped_log_cache.h"
 #include "studies/sweep/work/task_source.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// What the workers of one process share.
 struct SweepSite {
@@ -39,4 +39,4 @@ struct SweepSite {
 /// to trace and strip meanwhile.
 void work_together(SweepSite& site, TaskSource& source, unsigned workers);
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

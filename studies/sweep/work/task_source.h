@@ -7,7 +7,7 @@
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/work/schedule.h"
 
-namespace marti::studies {
+namespace marti::studies::sweep {
 
 /// Thread-safe. In one process it is the schedule itself (sweep/work/coordinator.h); a rank that does not
 /// hold the schedule asks the rank that does.
@@ -23,4 +23,4 @@ class TaskSource {
   virtual void stop() = 0;
 };
 
-}  // namespace marti::studies
+}  // namespace marti::studies::sweep

@@ -42,7 +42,8 @@ INSTANTIATE_TEST_SUITE_P(Bvh, BvhOfEachNode,
                          name_of);
 
 std::shared_ptr<const accel::TriangleSet> mixed_set() {
-  return std::make_shared<const accel::TriangleSet>(hostile_soup(0.0, 1), hostile_quadrics(0.0, 1));
+  return std::make_shared<const accel::TriangleSet>(studies::stability::hostile_soup(0.0, 1),
+                                                    hostile_quadrics(0.0, 1));
 }
 
 /// Numbering, sizes of nodes and leaves, and each primitive in exactly one leaf.
@@ -82,8 +83,8 @@ void check_tree(const Bvh& bvh) {
 TEST_P(BvhOfEachNode, EachPrimitiveIsInOneLeafAndNodesAreBreadthFirst) {
   check_tree(build(mixed_set()));
   check_tree(build(mixed_set(), 1));
-  check_tree(build(set_of(hostile_soup(1e6, 4, true))));
-  check_tree(build(set_of({corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})));
+  check_tree(build(set_of(studies::stability::hostile_soup(1e6, 4, true))));
+  check_tree(build(set_of({studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})));
 }
 
 // Triangles each half as large and half as far as the one before: every split cuts off one of them, unless
@@ -92,10 +93,10 @@ TEST_P(BvhOfEachNode, AHostileSceneIsNoDeeperThanLogsCanSay) {
   std::vector<accel::TriangleCorners> all;
   for (int k = 0; k < 120; ++k) {
     const double s = std::ldexp(1.0, -k);
-    all.push_back(corners({s, 0, 0}, {1.1 * s, 0, 0}, {s, 0.1 * s, 0.1 * s}));
+    all.push_back(studies::stability::corners({s, 0, 0}, {1.1 * s, 0, 0}, {s, 0.1 * s, 0.1 * s}));
   }
   check_tree(build(set_of(all), 1));
-  all.assign(500, corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  all.assign(500, studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   check_tree(build(set_of(all), 1));
 }
 
@@ -114,7 +115,7 @@ TEST_P(BvhOfEachNode, TheTreeIsTheSameWithAnyNumberOfThreads) {
 // The counting walk is written without vectors, so this compares the two.
 TEST_P(BvhOfEachNode, CountingChangesNothing) {
   check_counting(build(mixed_set()));
-  check_counting(build(set_of(hostile_soup(1e3, 8, true)), 1));
+  check_counting(build(set_of(studies::stability::hostile_soup(1e3, 8, true)), 1));
 }
 
 /// The tight box of what a node lists, from the primitives alone.
@@ -174,7 +175,7 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
   RayMaker maker(bvh.triangles(), bvh.bounds(), 6);
   std::uint64_t leaves = 0;
   for (int k = 0; k < 3000; ++k) {
-    accel::Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % 6]);
+    accel::Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
     ray.direction /= glm::length(ray.direction);
     Recorder recorder;
     const accel::Hit hit = bvh.closest(ray, recorder);
@@ -248,7 +249,7 @@ TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
 }
 
 TEST(Bvh, RefusesOptionsOutOfRange) {
-  const auto set = set_of(hostile_soup(0.0, 1));
+  const auto set = set_of(studies::stability::hostile_soup(0.0, 1));
   for (const BvhOptions& options :
        {BvhOptions{.max_objects = 0}, BvhOptions{.max_objects = 65}, BvhOptions{.bins = 1},
         BvhOptions{.bins = 65}, BvhOptions{.node = BvhNodeKind::eight_quantised, .max_objects = 4}}) {

@@ -47,7 +47,7 @@ accel::BuildLimit any_limit() {
 }
 
 RC_GTEST_PROP(LazyTree, ExpandedInAnyOrderIsTheEagerTree, ()) {
-  const auto triangles = set_of(hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
   LazyOctreeOptions options;
   options.tree.max_objects = *rc::gen::inRange(1U, 20U);
   options.tree.max_level = *rc::gen::inRange(1U, 8U);
@@ -105,7 +105,7 @@ void check_part(const OctreeBuild& part, const Octree& eager) {
 }
 
 RC_GTEST_PROP(LazyTree, AnyRaysOnAnyThreadsGiveTheEagerTreesHitsAndNodes, ()) {
-  const auto triangles = set_of(hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
   LazyOctreeOptions options;
   options.tree.max_objects = *rc::gen::inRange(1U, 10U);
   options.tree.max_level = *rc::gen::inRange(2U, 8U);
@@ -121,7 +121,8 @@ RC_GTEST_PROP(LazyTree, AnyRaysOnAnyThreadsGiveTheEagerTreesHitsAndNodes, ()) {
     RayMaker maker(*triangles, eager.bounds(), seed + offset);
     NullVisitor visitor;
     for (int k = 0; k < rays; ++k) {
-      const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % all_aims.size()]);
+      const Ray ray = maker.make(
+          studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
       different += same_hit(lazy.closest(ray, visitor), eager.closest(ray, visitor)) ? 0 : 1;
       different += lazy.occluded(ray, visitor) == eager.occluded(ray, visitor) ? 0 : 1;
     }
@@ -174,7 +175,7 @@ TEST(LazyTree, CountsNodesAndBytes) {
 
 // It can be used through the interface of all structures.
 TEST(LazyTree, IsAStructure) {
-  const auto triangles = set_of(hostile_soup(0.0, 4));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 4));
   LazyOctreeOptions options;
   options.initial.level = 1;
   const std::unique_ptr<accel::Structure> lazy = accel::make_lazy_octree(triangles, options);
@@ -182,7 +183,8 @@ TEST(LazyTree, IsAStructure) {
   EXPECT_EQ(lazy->kind(), "lazy_octree");
   RayMaker maker(*triangles, lazy->bounds(), 2);
   for (int k = 0; k < 4000; ++k) {
-    const Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % all_aims.size()]);
+    const Ray ray = maker.make(
+        studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
     ASSERT_TRUE(same_hit(lazy->closest(ray), brute->closest(ray)));
     ASSERT_EQ(lazy->occluded(ray), brute->occluded(ray));
   }
@@ -193,7 +195,7 @@ TEST(LazyTree, IsAStructure) {
 
 // It never differs silently from the eager tree: a ray that comes to the limit ends in an error.
 TEST(LazyTree, RefusesToBeCut) {
-  const auto triangles = set_of(hostile_soup(0.0, 5));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
   LazyOctreeOptions options;
   options.tree = {1, 10, 3000};
   options.initial.level = 1;

@@ -32,7 +32,7 @@ using accel::TriangleSet;
 
 // The level-by-level build against the definition, for any options and any number of threads, cut or not.
 RC_GTEST_PROP(OctreeBuilding, IsThatOfTheDefinitionAtAnyNumberOfThreads, ()) {
-  const auto triangles = set_of(hostile_soup(
+  const auto triangles = set_of(studies::stability::hostile_soup(
       *rc::gen::element(0.0, 1e3), *rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<bool>()));
   OctreeOptions options;
   options.max_objects = *rc::gen::inRange(1U, 40U);
@@ -68,7 +68,8 @@ TEST(OctreeBuilding, DoesNotDependOnThreads) {
       accel::NullVisitor visitor;
       RayMaker maker(*triangles, one.bounds(), 3);
       for (int k = 0; k < 2000; ++k) {
-        const accel::Ray ray = maker.make(all_aims[static_cast<std::size_t>(k) % all_aims.size()]);
+        const accel::Ray ray = maker.make(
+            studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
         const accel::Hit expected = one.closest(ray, visitor);
         const accel::Hit got = many.closest(ray, visitor);
         ASSERT_EQ(expected.primitive, got.primitive);
@@ -80,7 +81,7 @@ TEST(OctreeBuilding, DoesNotDependOnThreads) {
 
 // A tree built to a level is the top of the whole tree, which splits exactly the nodes left unsplit.
 TEST(OctreeBuilding, StopsAtALevel) {
-  const auto triangles = set_of(hostile_soup(0.0, 3));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 3));
   const OctreeOptions options{4, 8};
   const accel::RootFrame frame = accel::make_frame(*triangles);
   const OctreeBuild whole = accel::build_octree(*triangles, options, frame);
@@ -131,7 +132,7 @@ TEST(OctreeBuilding, StopsByTheRatioOfLeaves) {
 }
 
 TEST(OctreeBuilding, EnclosesTheBoxGiven) {
-  const auto triangles = set_of(hostile_soup(0.0, 3));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 3));
   OctreeOptions options{4, 8};
   options.enclose.include({-3.0, -1.5, 0.0});
   options.enclose.include({0.5, 2.0, 4.0});
@@ -155,7 +156,7 @@ TEST(OctreeBuilding, EnclosesTheBoxGiven) {
 
 // Sorting a node with Counted gives the same lists, and counts at least what each overlap test costs.
 TEST(OctreeBuilding, CountingASplitChangesNothing) {
-  const auto triangles = set_of(hostile_soup(0.0, 6));
+  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 6));
   const accel::RootFrame frame = accel::make_frame(*triangles);
   std::vector<std::uint32_t> all(triangles->size());
   for (std::uint32_t id = 0; id < all.size(); ++id) {

@@ -58,11 +58,12 @@ std::vector<TriangleCorners> some_moved(std::vector<TriangleCorners> soup, std::
         break;
       case 2: {
         const glm::dvec3 p = random.in_box(lo, hi);
-        triangle = corners(p, p, p);
+        triangle = studies::stability::corners(p, p, p);
         break;
       }
       default:
-        triangle = corners(random.in_box(lo, hi), random.in_box(lo, hi), random.in_box(lo, hi));
+        triangle =
+            studies::stability::corners(random.in_box(lo, hi), random.in_box(lo, hi), random.in_box(lo, hi));
     }
   }
   return soup;
@@ -140,7 +141,8 @@ RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
   options.max_level = *rc::gen::inRange(1U, 8U);
   options.max_entries =
       *rc::gen::element<std::uint64_t>(400, 2000, std::uint64_t{1} << 25, std::uint64_t{1} << 25);
-  const std::vector<TriangleCorners> soup = hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>());
+  const std::vector<TriangleCorners> soup =
+      studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>());
   // Spheres, cylinders and cones among them, half the time.
   std::vector<scenes::Quadric> quadrics;
   if (*rc::gen::arbitrary<bool>()) {
@@ -208,7 +210,7 @@ TEST(OctreeUpdating, KeepsWhatIsFarFromTheMovedTriangles) {
 
 TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
   const OctreeOptions options = enclosing(2.0);
-  const std::vector<TriangleCorners> soup = hostile_soup(0.0, 9);
+  const std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 9);
   const std::vector<TriangleCorners> moved = some_moved(soup, 4, 0.02);
   const Octree tree = Octree::build(set_of(soup), options);
   const auto after = set_of(moved);
@@ -230,7 +232,7 @@ TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
 // A lazy tree goes on from an update.
 TEST(OctreeUpdating, ALazyTreeGoesOnFromIt) {
   const OctreeOptions options = enclosing(2.0);
-  const std::vector<TriangleCorners> soup = hostile_soup(0.0, 9);
+  const std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 9);
   const Octree tree = Octree::build(set_of(soup), options);
   const auto after = set_of(some_moved(soup, 4, 0.1));
   const OctreeUpdate update = accel::update_octree(tree, *after);
@@ -240,7 +242,7 @@ TEST(OctreeUpdating, ALazyTreeGoesOnFromIt) {
 }
 
 TEST(OctreeUpdating, RefusesAnotherRootOrOtherTriangles) {
-  std::vector<TriangleCorners> soup = hostile_soup(0.0, 2);
+  std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 2);
   const Octree tight = Octree::build(set_of(soup), {});
   std::vector<TriangleCorners> fewer(soup.begin(), soup.end() - 1);
   EXPECT_NE(test::user_error_of([&] {

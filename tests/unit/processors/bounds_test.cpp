@@ -10,6 +10,12 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace theory;
+
 namespace {
 
 ClosedNetwork random_network(test::Random& random) {
@@ -74,7 +80,7 @@ RC_GTEST_PROP(Bounds, HoldForEveryMachine, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 8, 8);
   const MachineConfig machine = test::random_machine(random);
-  MachineResult result = replay(log, machine);
+  MachineResult result = replay::replay(log, machine);
   const FrameBounds bounds = frame_bounds(machine, result);
   RC_ASSERT(bounds.least() <= result.end);
   RC_ASSERT(bounds.mean_work <= bounds.node_work);

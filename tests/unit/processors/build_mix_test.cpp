@@ -14,6 +14,13 @@
 #include "scenes/procedural.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace node;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 // Within 3 %, or a fiftieth of an operation where there is next to none.
@@ -94,7 +101,7 @@ TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
     }
     for (const std::uint32_t nodes : {1U, 5U, 64U}) {
       machine.nodes = nodes;
-      const MachineResult result = replay(log, machine);
+      const MachineResult result = replay::replay(log, machine);
       EXPECT_EQ(result.build.counts().splits, static_cast<std::int64_t>(visited.size())) << kind;
       EXPECT_LT(result.build.counts().splits, branches) << "the rays of one view do not need the whole tree";
       EXPECT_EQ(result.build.start_up, 0);
@@ -103,13 +110,13 @@ TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
     // Private trees: at least the branches that any node needs, at most these once for each node.
     machine.nodes = 5;
     machine.build.sharing = Sharing::private_trees;
-    const MachineResult own = replay(log, machine);
+    const MachineResult own = replay::replay(log, machine);
     EXPECT_EQ(own.build.all_levels().distinct_splits, static_cast<std::int64_t>(visited.size()));
     EXPECT_GT(own.build.wasted_splits(), 0);
     EXPECT_LE(own.build.counts().splits, 5 * static_cast<std::int64_t>(visited.size()));
     // Building everything costs more memory and time than building what is needed.
     machine.build.sharing = Sharing::none;
-    const MachineResult none = replay(log, machine);
+    const MachineResult none = replay::replay(log, machine);
     EXPECT_EQ(none.build.counts().start_up_splits, branches);
     EXPECT_GT(none.build.start_up, 0);
     EXPECT_EQ(none.build.all_levels().partial, 0);

@@ -18,6 +18,12 @@
 #include "tests/support/traced_lines.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 // Tells `counts` of the references of nodes that always get the same packets; returns the misses of each
@@ -73,7 +79,7 @@ RC_GTEST_PROP(CacheCount, EveryCountIsThatOfTheReferencesOneByOne, (std::uint64_
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 9, 9);
   const MachineConfig machine = random_counting_machine(random);
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   test::NaiveCounts counts(machine);
   const std::vector<std::int64_t> second_misses = refer_one_by_one(log, machine, counts);
   counts.expect(result.counts, false);
@@ -90,11 +96,11 @@ RC_GTEST_PROP(CacheCount, NodesThatCountAreNodesThatDoNot, (std::uint64_t seed))
   const WorkLog log = test::random_log(random, 9, 9);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
-  const MachineResult fast = replay(log, machine, {.keep_read_events = true});
+  const MachineResult fast = replay::replay(log, machine, {.keep_read_events = true});
   machine.count = everything;
   machine.count.miss_classes = machine.cache.organisation != CacheOrganisation::none;
   for (const bool step_by_step : {false, true}) {
-    const MachineResult counted = replay(log, machine, {.step_by_step = step_by_step});
+    const MachineResult counted = replay::replay(log, machine, {.step_by_step = step_by_step});
     RC_ASSERT(counted.end == fast.end);
     for (std::size_t node = 0; node < fast.nodes.size(); ++node) {
       RC_ASSERT(counted.nodes[node].time == fast.nodes[node].time);
@@ -112,7 +118,7 @@ RC_GTEST_PROP(CacheCount, AnIdealInterconnectMakesEveryMissWaitTheSame, (std::ui
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   machine.placement = Placement::shared;
   machine.l2.sharing = machine.l2.sharing == SecondLevel::shared ? SecondLevel::none : machine.l2.sharing;
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   for (const AttributionRow& row : *result.counts.attribution) {
     RC_ASSERT(row.counts.transfer ==
               (row.counts.misses - row.counts.second_level_hits) * result.unloaded_miss);
@@ -135,11 +141,11 @@ TEST(CacheCount, ClassesOfCachesThatCannotHaveThem) {
     MachineConfig machine = random_counting_machine(random);
     machine.cache.cache.ways = memory::full_ways;
     machine.cache.cache.replacement = memory::Replacement::lru;
-    MachineResult result = replay(log, machine);
+    MachineResult result = replay::replay(log, machine);
     EXPECT_EQ(misses_of_class(result, memory::MissClass::conflict), 0);
     machine.cache.cache.size = 1U << 20U;
     machine.cache.split_sizes.fill(1U << 20U);
-    result = replay(log, machine);
+    result = replay::replay(log, machine);
     EXPECT_EQ(misses_of_class(result, memory::MissClass::compulsory), result.references().all_misses());
   }
 }
@@ -157,9 +163,9 @@ TEST(SecondLevel, OneNodeIsComputePlusHitsOfBothLevelsPlusMissesTimesLatency) {
     machine.layout.pixel_bytes = 1;
     machine.write_buffer = 4096;
     machine.l2.sharing = SecondLevel::none;
-    const MachineResult without = replay(log, machine);
+    const MachineResult without = replay::replay(log, machine);
     machine.l2.sharing = SecondLevel::private_caches;
-    const MachineResult with = replay(log, machine);
+    const MachineResult with = replay::replay(log, machine);
     const sim::Ticks saved =
         with.l2.counters().hits * (with.unloaded_miss - machine.clock.cycles(machine.l2.hit_cycles));
     EXPECT_EQ(with.nodes[0].finish, without.nodes[0].finish - saved);
@@ -175,7 +181,7 @@ TEST(SecondLevel, ASharedOneThatHoldsEverythingReadsEachLineOfAClusterOnce) {
     machine.interconnect.kind = static_cast<memory::InterconnectKind>(1 + round % 2);
     machine.l2.sharing = SecondLevel::shared;
     machine.l2.cache = {.size = 1U << 22U, .ways = memory::full_ways};
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     EXPECT_EQ(result.l2.counters().misses, result.counts.sharing->distinct);
     EXPECT_EQ(result.l2.counters().references(), result.references().all_misses());
   }
@@ -187,19 +193,19 @@ TEST(SecondLevel, RefusesWhatHasNoPlaceForIt) {
   MachineConfig machine;
   machine.l2.sharing = SecondLevel::private_caches;
   machine.cache.organisation = CacheOrganisation::none;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.l2.sharing = SecondLevel::shared;
   machine.interconnect.kind = memory::InterconnectKind::ideal;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.l2.sharing = SecondLevel::shared;
   machine.placement = Placement::replicated;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.l2.sharing = SecondLevel::private_caches;
   machine.l2.cache.size = 100;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
 }
 
 // The references of each row for which `of` is true, without its times.
@@ -222,9 +228,9 @@ RC_GTEST_PROP(CacheCount, ReadingForATreeIsApartFromReadingForRays, (std::uint64
   const WorkLog log = test::random_tree_log(random, 6, 6);
   MachineConfig machine = random_counting_machine(random);
   const auto given =
-      references_of(replay(log, machine), [](const AttributionRow& row) { return !row.splitting; });
+      references_of(replay::replay(log, machine), [](const AttributionRow& row) { return !row.splitting; });
   machine.build.sharing = Sharing::none;
-  const MachineResult built = replay(log, machine);
+  const MachineResult built = replay::replay(log, machine);
   RC_ASSERT(references_of(built, [](const AttributionRow& row) { return !row.splitting; }) == given);
   std::int64_t splitting = 0;
   for (const auto& [key, count] :
@@ -251,7 +257,7 @@ TEST(CacheCount, WritesOfATreeCauseMisses) {
     machine.build.sharing = Sharing::shared;
     machine.build.initial = InitialTree::level;
     test::share_in_order(machine);
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     invalidation += misses_of_class(result, memory::MissClass::invalidation);
     EXPECT_LE(misses_of_class(result, memory::MissClass::invalidation), result.build.counts().invalidations);
   }
@@ -266,7 +272,7 @@ RC_GTEST_PROP(CacheCount, BuildersCountWhatTheirReferencesOneByOneDo, (std::uint
   if (random() % 2 == 0) {
     test::add_random_contexts(random, log.traversal < accel::Traversal::grid, machine);
   }
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   test::NaiveCounts counts(machine);
   test::tell_of_building(log, machine, counts);
   counts.expect(result.counts, true);
@@ -287,8 +293,8 @@ TEST(CacheCount, ClassesOfBuildersDoNotDependOnRunningAhead) {
     machine.layout.node_bytes = 8;
     machine.packets = {2, 2, PacketOrder::scanline};
     machine.count.miss_classes = true;
-    EXPECT_EQ(replay(log, machine).counts.miss_classes,
-              replay(log, machine, {.step_by_step = true}).counts.miss_classes)
+    EXPECT_EQ(replay::replay(log, machine).counts.miss_classes,
+              replay::replay(log, machine, {.step_by_step = true}).counts.miss_classes)
         << seed;
   }
 }
@@ -299,11 +305,11 @@ TEST(CacheCount, RefusesWhatItCannotCount) {
   MachineConfig machine;
   machine.count.miss_classes = true;
   machine.cache.organisation = CacheOrganisation::none;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.count.miss_classes = true;
   machine.nodes = 1U << 20U;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
 }
 
 }  // namespace

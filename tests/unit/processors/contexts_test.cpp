@@ -13,6 +13,14 @@
 #include "tests/unit/processors/naive_contexts.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace node;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 MachineConfig random_contexts(test::Random& random, const WorkLog& log, std::uint32_t most_nodes = 8) {
@@ -25,10 +33,10 @@ RC_GTEST_PROP(Contexts, OneContextGivesWhatNodesWithoutContextsGive, (std::uint6
   test::Random random(seed);
   const WorkLog log = test::small_log(random);
   const MachineConfig machine = test::random_machine(random);
-  MachineResult one = replay(log, machine, {.with_contexts = true});
+  MachineResult one = replay::replay(log, machine, {.with_contexts = true});
   RC_ASSERT(one.contexts.counts().switches == 0);
   one.contexts.nodes.clear();
-  test::expect_equal(replay(log, machine), one);
+  test::expect_equal(replay::replay(log, machine), one);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -37,10 +45,10 @@ RC_GTEST_PROP(Contexts, OneContextBuildsATreeAsNodesWithoutContextsDo, (std::uin
   const WorkLog log = test::random_log_with_tree(random);
   MachineConfig machine = test::random_machine(random);
   test::add_random_build(random, machine);
-  MachineResult one = replay(log, machine, {.with_contexts = true});
+  MachineResult one = replay::replay(log, machine, {.with_contexts = true});
   RC_ASSERT(one.contexts.counts().switches == 0);
   one.contexts.nodes.clear();
-  test::expect_equal(replay(log, machine), one);
+  test::expect_equal(replay::replay(log, machine), one);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -59,7 +67,7 @@ RC_GTEST_PROP(Contexts, ThePlainImplementationGivesTheSame, (std::uint64_t seed)
   if (random() % 2 == 0) {
     machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
   }
-  const MachineResult result = replay(log, machine, {.with_contexts = true});
+  const MachineResult result = replay::replay(log, machine, {.with_contexts = true});
   test::NaiveCounts counts(machine);
   MachineResult plain = test::NaiveContexts(log, machine, &counts).run();
   counts.expect(result.counts, true);
@@ -87,9 +95,9 @@ RC_GTEST_PROP(Contexts, NodesWithNothingToBuildAreThoseWithAGivenTree, (std::uin
   const WorkLog log = test::random_log_with_tree(random);
   MachineConfig machine = random_builders(random, log);
   const std::vector<BranchStart> kept(log.topology.nodes.size(), BranchStart::kept);
-  MachineResult built = replay(log, machine, {.starts = kept, .with_contexts = true});
+  MachineResult built = replay::replay(log, machine, {.starts = kept, .with_contexts = true});
   machine.build = {};
-  const MachineResult given = replay(log, machine, {.with_contexts = true});
+  const MachineResult given = replay::replay(log, machine, {.with_contexts = true});
   built.build = given.build;
   test::expect_equal(built, given);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
@@ -102,7 +110,7 @@ TEST(Contexts, RandomBuildersDoAllThereIsToDo) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     test::Random random(seed);
     const WorkLog log = test::random_tree_log(random, 8, 8);
-    const MachineResult result = replay(log, random_builders(random, log));
+    const MachineResult result = replay::replay(log, random_builders(random, log));
     sim::merge(contexts, result.contexts.counts());
     sim::merge(built, result.build.counts());
     lock_wait += result.time()[static_cast<std::size_t>(Activity::lock_wait)];
@@ -122,7 +130,7 @@ TEST(Contexts, RandomMachinesDoAllThereIsToDo) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     test::Random random(seed);
     const WorkLog log = test::small_log(random);
-    sim::merge(sum, replay(log, random_contexts(random, log)).contexts.counts());
+    sim::merge(sum, replay::replay(log, random_contexts(random, log)).contexts.counts());
   }
   sim::for_each_counter(sum, [](const sim::Counter<ContextCounts>& counter, std::int64_t value) {
     EXPECT_GT(value, 100) << counter.name;
@@ -171,7 +179,7 @@ sim::Ticks periodic_end(std::uint32_t contexts, std::uint32_t misses, std::int64
   machine.packets = {1, 1, PacketOrder::scanline};
   machine.contexts = contexts;
   machine.switch_cycles = switch_cycles;
-  return replay(log, machine).end;
+  return replay::replay(log, machine).end;
 }
 
 // Saavedra-Barrera, Culler, von Eicken, Analysis of multithreaded architectures for parallel computing, SPAA
@@ -233,7 +241,7 @@ TEST(Contexts, AStaleCopyThatWasPrefetchedIsTakenOut) {
   machine.build.sharing = Sharing::shared;
   std::vector<BranchStart> starts(log.topology.nodes.size(), BranchStart::kept);
   starts[1] = BranchStart::lazy;
-  const MachineResult result = replay(log, machine, {.starts = starts});
+  const MachineResult result = replay::replay(log, machine, {.starts = starts});
   EXPECT_EQ(result.build.counts().splits, 1);
   EXPECT_EQ(result.build.counts().invalidations, 1);
 }
@@ -258,18 +266,19 @@ TEST(Contexts, RefusesWhatCannotBe) {
         }}) {
     MachineConfig machine;
     machine.contexts = 2;
-    EXPECT_NO_THROW((void)replay(log, machine));
+    EXPECT_NO_THROW((void)replay::replay(log, machine));
     spoil(machine);
-    EXPECT_THROW((void)replay(log, machine), sim::UserError);
+    EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   }
   MachineConfig machine;
   machine.prefetch.children = true;
   machine.prefetch.outstanding = 1;
   WorkLog walked = log;
   walked.traversal = accel::Traversal::octree;
-  EXPECT_NO_THROW((void)replay(walked, machine));
+  EXPECT_NO_THROW((void)replay::replay(walked, machine));
   walked.traversal = accel::Traversal::grid;
-  EXPECT_THROW((void)replay(walked, machine), sim::UserError) << "the cells of a grid are not children";
+  EXPECT_THROW((void)replay::replay(walked, machine), sim::UserError)
+      << "the cells of a grid are not children";
 }
 
 }  // namespace

@@ -11,6 +11,11 @@
 #include "sim/error.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace program;
+
 namespace {
 
 /// Within 3 %, or a fiftieth of an operation where there is next to none.

@@ -21,6 +21,14 @@
 #include "tests/unit/processors/naive_path.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace path;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 const sim::MemoryBudget unlimited;
@@ -142,8 +150,8 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
                                  : random_flow(random);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     Watched watched(recorder);
-    const MachineResult result = replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
-    test::expect_equal(result, replay(c.log, c.machine));
+    const MachineResult result = replay::replay(c.log, c.machine, {.observer = &watched, .path = &recorder});
+    test::expect_equal(result, replay::replay(c.log, c.machine));
     const CriticalPath& path = recorder.path();
     const sim::Ticks latency = c.machine.host.clock.cycles(c.machine.host.latency_cycles);
     const sim::Ticks occupancy = c.machine.host.clock.cycles(c.machine.host.occupancy_cycles);
@@ -204,7 +212,7 @@ TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
     machine.interconnect.kind = memory::InterconnectKind::ideal;
     machine.write_buffer = 200;
     PathRecorder recorder(unlimited, PathPieces::no_fold);
-    const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+    const MachineResult result = replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
     const TimeDivision& time = result.nodes[0].time;
     const CriticalPath& path = recorder.path();
     // The frame may end with the last posted write, for which the node idles.
@@ -231,7 +239,7 @@ TEST(CriticalPath, OfOneNodeWithAllOfSpaceIsHowItsTimeDivides) {
     machine.host.occupancy_cycles = 0;
     machine.space.queue = machine.space.in_flight = 1000;  // all rays arrive at once
     PathRecorder recorder(unlimited, PathPieces::no_fold);
-    const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+    const MachineResult result = replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
     const TimeDivision& time = result.nodes[0].time;
     const auto spent = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
     const CriticalPath& path = recorder.path();
@@ -262,12 +270,12 @@ TEST(CriticalPath, OfAPipelineIsItsSlowestStageOrTheHost) {
   const WorkLog log = test::random_ray_trees(random, 20, 20, 12, 3);
   MachineConfig machine = pipeline_of_nine();
   PathRecorder slow_stage(unlimited);
-  const MachineResult result = replay(log, machine, {.observer = &slow_stage, .path = &slow_stage});
+  const MachineResult result = replay::replay(log, machine, {.observer = &slow_stage, .path = &slow_stage});
   EXPECT_GT(slow_stage.path().nodes[4], result.end - result.end / 50);
 
   machine.host.occupancy_cycles = 1'000'000;
   PathRecorder slow_host(unlimited);
-  const MachineResult waiting = replay(log, machine, {.observer = &slow_host, .path = &slow_host});
+  const MachineResult waiting = replay::replay(log, machine, {.observer = &slow_host, .path = &slow_host});
   EXPECT_EQ(of(slow_host.path(), PathKind::dispatch),
             machine.host.clock.cycles(machine.host.latency_cycles + 399 * machine.host.occupancy_cycles));
   EXPECT_GT(of(slow_host.path(), PathKind::dispatch), waiting.end - waiting.end / 50);
@@ -281,7 +289,7 @@ TEST(CriticalPath, OfANetworkThatTakesNoTimeHasNoMessages) {
     machine.network.hop_cycles = hop;
     machine.pipeline.in_flight = 1;  // so that each message is waited for
     PathRecorder recorder(unlimited);
-    (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+    (void)replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
     EXPECT_EQ(of(recorder.path(), PathKind::network) > 0, hop > 0);
   }
 }
@@ -297,7 +305,7 @@ TEST(CriticalPath, OfABusThatIsAlwaysBusyIsItsTransfers) {
   machine.packets.width = 1;
   machine.packets.height = 1;
   PathRecorder recorder(unlimited, PathPieces::no_fold);
-  const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+  const MachineResult result = replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
   EXPECT_GT(of(recorder.path(), PathKind::transfer), result.end - result.end / 100);
   EXPECT_GT(recorder.path().node_changes, 1000);
 }
@@ -319,7 +327,7 @@ TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
     test::make_plain(random, machine);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     test::NaivePath naive(recorder, machine);
-    const MachineResult result = replay(log, machine, {.observer = &naive, .path = &recorder});
+    const MachineResult result = replay::replay(log, machine, {.observer = &naive, .path = &recorder});
     EXPECT_EQ(pieces_of(recorder), naive.path(result.end));
     ASSERT_FALSE(::testing::Test::HasFailure());
   }
@@ -351,7 +359,7 @@ TEST(CriticalPath, OfMovingRaysIsThatOfASecondModel) {
     Case c = random_flow(random);
     make_plain_flow(random, c.machine);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
-    const MachineResult result = replay(c.log, c.machine, {.observer = &recorder, .path = &recorder});
+    const MachineResult result = replay::replay(c.log, c.machine, {.observer = &recorder, .path = &recorder});
     if (c.machine.scheme == Scheme::pipeline) {
       const test::NaivePipeline naive(c.log, c.machine);
       ASSERT_EQ(pieces_of(recorder), naive.path.path(result.end));
@@ -393,7 +401,7 @@ TEST(CriticalPath, GoesOverTheNodesInTheOrderInWhichTheBusServesThem) {
   machine.cache.organisation = CacheOrganisation::none;
   machine.interconnect.mode = memory::BusMode::held;
   PathRecorder recorder(unlimited, PathPieces::no_fold);
-  const MachineResult result = replay(log, machine, {.observer = &recorder, .path = &recorder});
+  const MachineResult result = replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
   std::vector<std::uint32_t> nodes;
   recorder.each_from_the_end([&](const PathPiece& piece) {
     if (nodes.empty() || nodes.back() != piece.owner.node) {
@@ -415,8 +423,8 @@ TEST(CriticalPath, FoldingPiecesChangesNoSum) {
     const Case c = seed % 3 == 0 ? random_flow(random) : random_case(random);
     PathRecorder whole(unlimited, PathPieces::no_fold);
     PathRecorder folded(unlimited, static_cast<std::uint32_t>(test::pick(random, 0, 200)));
-    (void)replay(c.log, c.machine, {.observer = &whole, .path = &whole});
-    (void)replay(c.log, c.machine, {.observer = &folded, .path = &folded});
+    (void)replay::replay(c.log, c.machine, {.observer = &whole, .path = &whole});
+    (void)replay::replay(c.log, c.machine, {.observer = &folded, .path = &folded});
     const CriticalPath& a = whole.path();
     const CriticalPath& b = folded.path();
     EXPECT_EQ(a.end, b.end);
@@ -445,7 +453,7 @@ TEST(CriticalPath, WhatIsKeptDoesNotGrowWithTheFrame) {
       machine.cache.organisation = CacheOrganisation::none;
       machine.interconnect.kind = kind;
       PathRecorder recorder(unlimited, 1000);
-      (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+      (void)replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
       EXPECT_GT(recorder.path().pieces, 2000);
       kept = size == 16 ? recorder.pieces().most_kept() : recorder.pieces().most_kept() - kept;
     }
@@ -463,7 +471,7 @@ TEST(CriticalPath, WhatIsKeptOfMovingRaysDoesNotGrowWithTheFrame) {
       machine.scheme = scheme;
       machine.space.in_flight = 20;
       PathRecorder recorder(unlimited, 1000);
-      (void)replay(log, machine, {.observer = &recorder, .path = &recorder});
+      (void)replay::replay(log, machine, {.observer = &recorder, .path = &recorder});
       kept = size == 32 ? recorder.pieces().most_kept() : recorder.pieces().most_kept() - kept;
     }
     EXPECT_LT(kept, 200U);
@@ -475,7 +483,7 @@ TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
   MachineConfig machine;
   PathRecorder small(sim::MemoryBudget(1 << 16U, true));
   try {
-    (void)replay(log, machine, {.observer = &small, .path = &small});
+    (void)replay::replay(log, machine, {.observer = &small, .path = &small});
     FAIL();
   } catch (const sim::KeyError& error) {
     EXPECT_NE(std::string(error.what()).find("record.critical_path"), std::string::npos) << error.what();
@@ -483,7 +491,7 @@ TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
   // A timeline needs every piece, so leaving it out may be enough.
   PathRecorder unfolded(sim::MemoryBudget(1 << 16U, true), PathPieces::no_fold);
   try {
-    (void)replay(log, machine, {.observer = &unfolded, .path = &unfolded});
+    (void)replay::replay(log, machine, {.observer = &unfolded, .path = &unfolded});
     FAIL();
   } catch (const sim::KeyError& error) {
     EXPECT_NE(std::string(error.what()).find("record.timeline"), std::string::npos) << error.what();

@@ -15,6 +15,14 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace node;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 struct Case {
@@ -40,13 +48,13 @@ RC_GTEST_PROP(Dynamic, ATreeThatIsKeptIsATreeThatIsGiven, (std::uint64_t seed)) 
   test::Random random(seed);
   Case c = random_case(random);
   c.options.starts.assign(c.log.topology.nodes.size(), BranchStart::kept);
-  MachineResult kept = replay(c.log, c.machine, c.options);
+  MachineResult kept = replay::replay(c.log, c.machine, c.options);
   RC_ASSERT(kept.build.start_up == 0);
   RC_ASSERT(kept.build.counts().written_bytes == 0);
   RC_ASSERT(kept.build.all_levels().partial == 0);
   kept.build = {};
   c.machine.build.sharing = Sharing::given;
-  test::expect_equal(kept, replay(c.log, c.machine));
+  test::expect_equal(kept, replay::replay(c.log, c.machine));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -56,12 +64,12 @@ RC_GTEST_PROP(Dynamic, AFullInitialTreeIsBuildingBeforehandHoweverItIsShared, (s
   c.options.starts.clear();
   c.machine.build.initial = InitialTree::full;
   c.machine.build.sharing = Sharing::none;
-  const MachineResult none = replay(c.log, c.machine, c.options);
+  const MachineResult none = replay::replay(c.log, c.machine, c.options);
   for (const Sharing sharing : {Sharing::shared, Sharing::private_trees}) {
     const bool in_order = c.machine.placement == Placement::shared && !writes_done_later(c.machine);
     if (sharing == Sharing::private_trees || in_order) {
       c.machine.build.sharing = sharing;
-      test::expect_equal(replay(c.log, c.machine, c.options), none);
+      test::expect_equal(replay::replay(c.log, c.machine, c.options), none);
       RC_ASSERT(!::testing::Test::HasFatalFailure());
     }
   }
@@ -107,7 +115,7 @@ RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes,
   }
   for (const std::uint32_t nodes : {1U, 2U, 3U, 16U}) {
     machine.nodes = nodes;
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     for (std::size_t level = 0; level < result.build.levels.size(); ++level) {
       RC_ASSERT(result.build.levels[level].splits == splits[level + 1]);
       RC_ASSERT(result.build.levels[level].partial == partial[level + 1]);
@@ -127,9 +135,9 @@ RC_GTEST_PROP(Dynamic, OneNodeBuildsThePrivateTreeThatItWouldShare, (std::uint64
   c.machine.nodes = 1;
   test::share_in_order(c.machine);
   c.machine.build.sharing = Sharing::shared;
-  const MachineResult shared = replay(c.log, c.machine, c.options);
+  const MachineResult shared = replay::replay(c.log, c.machine, c.options);
   c.machine.build.sharing = Sharing::private_trees;
-  const MachineResult own = replay(c.log, c.machine, c.options);
+  const MachineResult own = replay::replay(c.log, c.machine, c.options);
   const BuildCounts a = shared.build.counts();
   const BuildCounts b = own.build.counts();
   RC_ASSERT(a.splits == b.splits);
@@ -153,9 +161,9 @@ RC_GTEST_PROP(Dynamic, OneNodeBuildsThePrivateTreeThatItWouldShare, (std::uint64
 RC_GTEST_PROP(Dynamic, WhatTheRaysDoDoesNotDependOnHowTheTreeIsBuilt, (std::uint64_t seed)) {
   test::Random random(seed);
   Case c = random_case(random);
-  const MachineResult built = replay(c.log, c.machine, c.options);
+  const MachineResult built = replay::replay(c.log, c.machine, c.options);
   c.machine.build.sharing = Sharing::given;
-  test::expect_equal_counters(built.steps(), replay(c.log, c.machine).steps());
+  test::expect_equal_counters(built.steps(), replay::replay(c.log, c.machine).steps());
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -203,7 +211,7 @@ TEST(Dynamic, ATinyTreeIsBuiltInTheTimeThatItsPartsTake) {
   const MachineConfig machine = tiny_machine(1);
   const BuildTicks build = build_ticks(machine);
   const StepTicks step = step_ticks(machine, tiny_log(1));
-  const MachineResult result = replay(tiny_log(1), machine);
+  const MachineResult result = replay::replay(tiny_log(1), machine);
   // The root's record, the lock, the list of two, two primitives; then the children and the root are written.
   const sim::Ticks compute =
       build.lock + 2 * build.listed + 3 * build.overlap + 2 * (build.child + build.entry) + build.publish;
@@ -226,7 +234,7 @@ TEST(Dynamic, WhoComesSecondWaitsUntilTheTreeIsPublished) {
   const MachineConfig machine = tiny_machine(2);
   const BuildTicks build = build_ticks(machine);
   const StepTicks step = step_ticks(machine, tiny_log(1));
-  const MachineResult result = replay(tiny_log(2), machine);
+  const MachineResult result = replay::replay(tiny_log(2), machine);
   const sim::Ticks work =
       2 * build.listed + 3 * build.overlap + 2 * (build.child + build.entry) + build.publish + 3 * latency;
   // Both have made their lock transactions at the same time; the second can go on when the publishing write
@@ -245,7 +253,7 @@ TEST(Dynamic, BuildingBeforehandKeepsTheHostWaiting) {
   machine.build.sharing = Sharing::none;
   const BuildTicks build = build_ticks(machine);
   const StepTicks step = step_ticks(machine, tiny_log(1));
-  const MachineResult result = replay(tiny_log(2), machine);
+  const MachineResult result = replay::replay(tiny_log(2), machine);
   // No lock; the last write is done one latency after it was posted.
   const sim::Ticks start_up = 2 * build.listed + 3 * build.overlap + 2 * (build.child + build.entry) +
                               build.publish + 4 * latency + latency;
@@ -264,7 +272,7 @@ TEST(Dynamic, PrivateTreesAreBuiltTwiceInMemoryOfTheirOwn) {
   machine.local.width = 4;
   const BuildTicks build = build_ticks(machine);
   const StepTicks step = step_ticks(machine, tiny_log(1));
-  const MachineResult result = replay(tiny_log(2), machine);
+  const MachineResult result = replay::replay(tiny_log(2), machine);
   const auto local = [](std::int64_t beats) { return sim::Ticks{300 + 200 * beats}; };
   // The empty slot is read, then the shared record, the shared list and two primitives; written are two
   // lists of one entry, two records and the slot.
@@ -283,7 +291,7 @@ TEST(Dynamic, PrivateTreesAreBuiltTwiceInMemoryOfTheirOwn) {
 TEST(Dynamic, AStaleCopyOfTheRecordIsTakenOutOfTheOthersCaches) {
   MachineConfig machine = tiny_machine(3);
   machine.cache.organisation = CacheOrganisation::unified;
-  const MachineResult result = replay(tiny_log(30), machine);
+  const MachineResult result = replay::replay(tiny_log(30), machine);
   // All three have read the root's record before one of them publishes it; two copies are stale.
   EXPECT_EQ(result.build.counts().invalidations, 2);
   EXPECT_EQ(result.build.counts().splits, 1);
@@ -325,7 +333,7 @@ TEST(Dynamic, RefusesWhatHasNoTreeToBuild) {
   machine.build.sharing = Sharing::shared;
   const auto refused = [&](const ReplayOptions& options, std::string_view why) {
     try {
-      (void)replay(log, machine, options);
+      (void)replay::replay(log, machine, options);
       FAIL() << "not refused: " << why;
     } catch (const sim::UserError& error) {
       EXPECT_NE(std::string_view(error.what()).find(why), std::string_view::npos) << error.what();

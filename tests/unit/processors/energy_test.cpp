@@ -20,6 +20,13 @@
 #include "tests/support/user_error.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace energy;
+using namespace machine;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 constexpr std::int64_t fj_a_pj = 1000;
@@ -382,13 +389,13 @@ TEST(Energy, IsThatOfWhatTheCountersSayOnRandomMachines) {
     test::Random random(seed);
     Case one = random_case(random);
     MachineConfig& machine = one.machine;
-    const MachineResult plain = replay(one.log, machine);
+    const MachineResult plain = replay::replay(one.log, machine);
     ASSERT_FALSE(plain.energy.has_value());
     machine.energy = without_figures().energy;
     const auto with = [&](const auto& change) {
       MachineConfig changed = machine;
       change(changed.energy.figures);
-      const MachineResult result = replay(one.log, changed);
+      const MachineResult result = replay::replay(one.log, changed);
       EXPECT_EQ(result.end, plain.end);
       EXPECT_EQ(result.energy->total, sum_of_parts(*result.energy)) << seed;
       return *result.energy;

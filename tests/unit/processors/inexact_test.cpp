@@ -14,6 +14,13 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 void expect_equal(const MachineResult& a, const MachineResult& b) {
@@ -52,8 +59,8 @@ RC_GTEST_PROP(Inexact, AStrippedLogGivesTheSameSample, (std::uint64_t seed)) {
   std::erase_if(some, [&](std::uint64_t packet) { return packet != 0 && test::pick(random, 0, 2) != 0; });
   for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
     const PacketSample sample(some, packets, warm_up);
-    const MachineResult whole = replay(log, machine, {.sample = &sample});
-    const MachineResult less = replay(log, machine, {.stripped = stripped.get(), .sample = &sample});
+    const MachineResult whole = replay::replay(log, machine, {.sample = &sample});
+    const MachineResult less = replay::replay(log, machine, {.stripped = stripped.get(), .sample = &sample});
     expect_equal(whole, less);
     RC_ASSERT(!::testing::Test::HasFatalFailure());
     RC_ASSERT(whole.packet_figures == less.packet_figures);
@@ -65,10 +72,10 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
   const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_sampled(random);
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
-  const MachineResult exact = replay(log, machine, {.keep_read_events = true});
+  const MachineResult exact = replay::replay(log, machine, {.keep_read_events = true});
   for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
     const PacketSample sample(everything(packets), packets, warm_up);
-    const MachineResult sampled = replay(log, machine, {.sample = &sample});
+    const MachineResult sampled = replay::replay(log, machine, {.sample = &sample});
     expect_equal(exact, sampled);
     RC_ASSERT(!::testing::Test::HasFatalFailure());
     // The packets' figures add up to those of the nodes.
@@ -103,8 +110,8 @@ RC_GTEST_PROP(Inexact, ASampleIsAFrameOfItsPackets, (std::uint64_t seed)) {
   RC_PRE(!chosen.empty());
   const PacketSample cold(chosen, packets, 0);
   const PacketSample warm(chosen, packets, PacketSample::all_before);
-  const MachineResult first = replay(log, machine, {.sample = &cold});
-  const MachineResult second = replay(log, machine, {.sample = &warm});
+  const MachineResult first = replay::replay(log, machine, {.sample = &cold});
+  const MachineResult second = replay::replay(log, machine, {.sample = &warm});
   RC_ASSERT(first.packets == chosen.size());
   RC_ASSERT(first.pixels == second.pixels);
   // The references do not depend on warming.
@@ -121,7 +128,7 @@ RC_GTEST_PROP(Inexact, FullWarmingOfOneNodeGivesEachPacketsOwnMisses, (std::uint
   machine.nodes = 1;
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
   const PacketSample all(everything(packets), packets, 0);
-  const MachineResult exact = replay(log, machine, {.sample = &all});
+  const MachineResult exact = replay::replay(log, machine, {.sample = &all});
   std::vector<std::uint64_t> chosen;
   for (std::uint64_t packet = 0; packet < packets; ++packet) {
     if (test::pick(random, 0, 1) == 0) {
@@ -130,7 +137,7 @@ RC_GTEST_PROP(Inexact, FullWarmingOfOneNodeGivesEachPacketsOwnMisses, (std::uint
   }
   RC_PRE(!chosen.empty());
   const PacketSample part(chosen, packets, PacketSample::all_before);
-  const MachineResult sampled = replay(log, machine, {.sample = &part});
+  const MachineResult sampled = replay::replay(log, machine, {.sample = &part});
   RC_ASSERT(sampled.packet_figures.size() == chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     RC_ASSERT(sampled.packet_figures[i].misses == exact.packet_figures[chosen[i]].misses);
@@ -180,7 +187,7 @@ TEST(Inexact, MachinesThatCannotBeSampledAreRefused) {
   const auto refused = [&](auto change) {
     MachineConfig other = machine;
     change(other);
-    EXPECT_THROW((void)replay(log, other, {.sample = &sample}), sim::UserError);
+    EXPECT_THROW((void)replay::replay(log, other, {.sample = &sample}), sim::UserError);
   };
   refused([](MachineConfig& m) { m.host.assignment = Assignment::blocks; });
   refused([](MachineConfig& m) { m.contexts = 2; });

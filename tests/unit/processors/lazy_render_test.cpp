@@ -11,6 +11,9 @@
 #include "tests/unit/processors/program_scenes.h"
 
 namespace marti::processors::test {
+
+using namespace program;
+
 namespace {
 
 TEST(LazyRender, GivesTheImageOfAnyStructureOnAnyNumberOfThreads) {

@@ -13,6 +13,12 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 constexpr ReplayOptions everything = {.keep_lookups = true, .keep_read_events = true};
@@ -41,8 +47,8 @@ RC_GTEST_PROP(LeftOut, ChangesNoResult, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::small_log(random);
   const MachineConfig machine = roomy_machine(random);
-  const MachineResult less = replay(log, machine);
-  const MachineResult all = replay(log, machine, everything);
+  const MachineResult less = replay::replay(log, machine);
+  const MachineResult all = replay::replay(log, machine, everything);
   test::expect_equal(less, all);
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   RC_ASSERT(!all.left_out.lookups && !all.left_out.read_events);

@@ -25,13 +25,14 @@ namespace marti::test {
 class NaiveContexts final : public sim::EventHandler {
  public:
   /// `counts`, where given, is told of every reference and prefetch.
-  NaiveContexts(const WorkLog& log, const MachineConfig& machine, NaiveCounts* counts = nullptr)
+  NaiveContexts(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
+                NaiveCounts* counts = nullptr)
       : log_(log),
         machine_(machine),
         program_(log, machine),
         packets_(log.width, log.height, machine.packets),
         host_(machine.host, packets_.size(), machine.all_nodes()),
-        cached_(machine.cache.organisation != CacheOrganisation::none),
+        cached_(machine.cache.organisation != processors::machine::CacheOrganisation::none),
         unit_(program_.unit()),
         ports_(machine.ports_of_node()),
         counted_(counts),
@@ -49,23 +50,24 @@ class NaiveContexts final : public sim::EventHandler {
       clients_[cluster].all = this;
       clients_[cluster].first = cluster * machine.nodes;
       const std::uint32_t ports = machine.nodes * ports_;
-      interconnects_.push_back(
-          make_memory_system(machine, {engine_, clients_[cluster], 2, cluster * ports, ports, 5}));
+      interconnects_.push_back(processors::node::make_memory_system(
+          machine, {engine_, clients_[cluster], 2, cluster * ports, ports, 5}));
     }
   }
 
-  MachineResult run() {
+  processors::replay::MachineResult run() {
     for (std::uint32_t context = 0; context < machine_.contexts; ++context) {
       for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
         engine_.post(sim::Event::make(0, 1, context * machine_.all_nodes() + node));
       }
     }
     engine_.run(std::numeric_limits<std::uint64_t>::max());
-    MachineResult result;
+    processors::replay::MachineResult result;
     result.end = end_;
     result.host = host_.statistics();
     for (Node& node : nodes_) {
-      node.statistics.time[static_cast<std::size_t>(Activity::idle)] = end_ - node.statistics.finish;
+      node.statistics.time[static_cast<std::size_t>(processors::cost::Activity::idle)] =
+          end_ - node.statistics.finish;
       node.counts.useless += static_cast<std::int64_t>(node.unasked.size());
       result.nodes.push_back(node.statistics);
       result.contexts.nodes.push_back(node.counts);
@@ -142,8 +144,8 @@ class NaiveContexts final : public sim::EventHandler {
     std::map<std::pair<int, std::uint64_t>, std::list<std::uint64_t>> sets;  // newest first
     std::set<Key> unasked;
     std::map<std::uint64_t, std::list<std::uint64_t>> second_sets;  // of the second level
-    NodeStatistics statistics;
-    ContextCounts counts;
+    processors::cost::NodeStatistics statistics;
+    processors::walk::ContextCounts counts;
     memory::CacheCounters second_level;
   };
   struct Client final : memory::InterconnectClient {
@@ -167,7 +169,7 @@ class NaiveContexts final : public sim::EventHandler {
 
   // ---- the processor
 
-  void spend(Node& node, Activity activity, sim::Ticks time) {
+  void spend(Node& node, processors::cost::Activity activity, sim::Ticks time) {
     node.statistics.time[static_cast<std::size_t>(activity)] += time;
   }
 
@@ -224,7 +226,7 @@ class NaiveContexts final : public sim::EventHandler {
   }
 
   // An action of the context at work is done.
-  void go_on(std::uint32_t number, Activity activity, sim::Ticks time) {
+  void go_on(std::uint32_t number, processors::cost::Activity activity, sim::Ticks time) {
     Node& node = nodes_[number];
     spend(node, activity, time);
     node.time += time;
@@ -238,7 +240,7 @@ class NaiveContexts final : public sim::EventHandler {
     const Action action = context.actions[context.next];
     if (action.what == Action::What::children) {
       prefetch_children(number, action.branch);
-      go_on(number, Activity::traversal, 0);
+      go_on(number, processors::cost::Activity::traversal, 0);
       return;
     }
     const Key key = key_of(action.kind, action.address / unit_);
@@ -260,7 +262,7 @@ class NaiveContexts final : public sim::EventHandler {
     if (hit) {
       look_up(node, key);
       ++node.statistics.references.hits[static_cast<std::size_t>(action.kind)];
-      go_on(number, Activity::cache_access, program_.ticks().hit);
+      go_on(number, processors::cost::Activity::cache_access, program_.ticks().hit);
       return;
     }
     ++node.statistics.references.misses[static_cast<std::size_t>(action.kind)];
@@ -270,21 +272,22 @@ class NaiveContexts final : public sim::EventHandler {
         if (counted_ != nullptr) {
           counted_->second_level_hit(action);
         }
-        go_on(number, Activity::cache_access, machine_.clock.cycles(machine_.l2.hit_cycles));
+        go_on(number, processors::cost::Activity::cache_access,
+              machine_.clock.cycles(machine_.l2.hit_cycles));
         return;
       }
     }
     const std::uint32_t bytes = cached_ ? unit_ : action.bytes;
-    if (machine_.placement == Placement::replicated) {
-      const LocalMemoryConfig& local = machine_.local;
+    if (machine_.placement == processors::machine::Placement::replicated) {
+      const processors::machine::LocalMemoryConfig& local = machine_.local;
       const sim::Ticks transfer =
           local.clock.cycles(local.cycles_per_beat) * ((bytes + local.width - 1) / local.width);
-      spend(node, Activity::transfer, transfer);
+      spend(node, processors::cost::Activity::transfer, transfer);
       node.time += transfer;
       if (counted_ != nullptr) {
         counted_->wait(action, transfer + local.clock.cycles(local.access_cycles));
       }
-      go_on(number, Activity::bank_access, local.clock.cycles(local.access_cycles));
+      go_on(number, processors::cost::Activity::bank_access, local.clock.cycles(local.access_cycles));
       return;
     }
     ++context.next;
@@ -358,22 +361,22 @@ class NaiveContexts final : public sim::EventHandler {
     }
     const auto flight = node.contexts[*next].flight;
     if (!flight) {
-      spend(node, Activity::dispatch_wait, engine_.now() - node.since);
+      spend(node, processors::cost::Activity::dispatch_wait, engine_.now() - node.since);
     } else if (flight->second_level) {
-      spend(node, Activity::cache_access, engine_.now() - node.since);
+      spend(node, processors::cost::Activity::cache_access, engine_.now() - node.since);
     } else {
       // Where each phase would be in this order; the node waited from `since` on.
       sim::Ticks at = flight->done - flight->service.wait_interconnect - flight->service.transfer -
                       flight->service.wait_bank - flight->service.bank;
-      const auto phase = [&](Activity activity, sim::Ticks length) {
+      const auto phase = [&](processors::cost::Activity activity, sim::Ticks length) {
         const sim::Ticks from = std::max(at, node.since);
         at += length;
         spend(node, activity, std::max<sim::Ticks>(0, at - from));
       };
-      phase(Activity::interconnect_wait, flight->service.wait_interconnect);
-      phase(Activity::transfer, flight->service.transfer);
-      phase(Activity::bank_wait, flight->service.wait_bank);
-      phase(Activity::bank_access, flight->service.bank);
+      phase(processors::cost::Activity::interconnect_wait, flight->service.wait_interconnect);
+      phase(processors::cost::Activity::transfer, flight->service.transfer);
+      phase(processors::cost::Activity::bank_wait, flight->service.wait_bank);
+      phase(processors::cost::Activity::bank_access, flight->service.bank);
       if (counted_ != nullptr) {
         counted_->wait(node.contexts[*next].waits_for, engine_.now() - node.since);
       }
@@ -387,7 +390,7 @@ class NaiveContexts final : public sim::EventHandler {
     node.time = engine_.now();
     if (node.last && *node.last != which) {
       const sim::Ticks time = machine_.clock.cycles(machine_.switch_cycles);
-      spend(node, Activity::switching, time);
+      spend(node, processors::cost::Activity::switching, time);
       node.time += time;
       ++node.counts.switches;
     }
@@ -404,7 +407,7 @@ class NaiveContexts final : public sim::EventHandler {
       return;
     }
     if (node.buffer.front() > node.time) {
-      spend(node, Activity::queue_full_wait, node.buffer.front() - node.time);
+      spend(node, processors::cost::Activity::queue_full_wait, node.buffer.front() - node.time);
       node.time = node.buffer.front();
       engine_.post(sim::Event::make(node.time, 4, number));
       return;
@@ -415,14 +418,16 @@ class NaiveContexts final : public sim::EventHandler {
     node.buffer.push_back(never);
     interconnect_of(number).write({number % machine_.nodes * ports_, context.actions[context.next].address,
                                    machine_.layout.pixel_bytes});
-    go_on(number, Activity::shading, 0);
+    go_on(number, processors::cost::Activity::shading, 0);
   }
 
   // ---- the cache
 
   int cache_of(memory::RecordKind kind) const {
     constexpr std::array<int, 6> part = {0, 1, 2, 3, 3, 3};
-    return machine_.cache.organisation == CacheOrganisation::split ? part[static_cast<std::size_t>(kind)] : 0;
+    return machine_.cache.organisation == processors::machine::CacheOrganisation::split
+               ? part[static_cast<std::size_t>(kind)]
+               : 0;
   }
   Key key_of(memory::RecordKind kind, std::uint64_t line) const { return {cache_of(kind), line}; }
   std::list<std::uint64_t>& set_of(Node& node, const Key& key) {
@@ -430,7 +435,7 @@ class NaiveContexts final : public sim::EventHandler {
   }
   memory::CacheShape shape_of(int cache) const {
     memory::CacheConfig config = machine_.cache.cache;
-    if (machine_.cache.organisation == CacheOrganisation::split) {
+    if (machine_.cache.organisation == processors::machine::CacheOrganisation::split) {
       config.size = machine_.cache.split_sizes[static_cast<std::size_t>(cache)];
     }
     return memory::shape_of(config);
@@ -468,13 +473,15 @@ class NaiveContexts final : public sim::EventHandler {
     }
     return nullptr;
   }
-  [[nodiscard]] bool has_second_level() const { return machine_.l2.sharing == SecondLevel::private_caches; }
+  [[nodiscard]] bool has_second_level() const {
+    return machine_.l2.sharing == processors::machine::SecondLevel::private_caches;
+  }
   // Looks the second level up; brings the line in when it is not there.
   bool second_level_has(Node& node, std::uint64_t line) {
     if (!has_second_level()) {
       return false;
     }
-    const memory::CacheShape shape = memory::shape_of(second_level_cache(machine_));
+    const memory::CacheShape shape = memory::shape_of(processors::machine::second_level_cache(machine_));
     auto& set = node.second_sets[line % shape.sets];
     const auto at = std::find(set.begin(), set.end(), line);
     const bool hit = at != set.end();
@@ -548,11 +555,11 @@ class NaiveContexts final : public sim::EventHandler {
     }
   }
 
-  const WorkLog& log_;
-  MachineConfig machine_;
+  const processors::program::WorkLog& log_;
+  processors::machine::MachineConfig machine_;
   NaiveProgram program_;
-  PacketList packets_;
-  Host host_;
+  processors::machine::PacketList packets_;
+  processors::node::Host host_;
   bool cached_;
   std::uint32_t unit_;
   std::uint32_t ports_;

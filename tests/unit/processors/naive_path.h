@@ -19,10 +19,10 @@
 namespace marti::test {
 
 /// Makes a random machine one of the plain ones.
-inline void make_plain(Random& random, processors::MachineConfig& machine) {
+inline void make_plain(Random& random, processors::machine::MachineConfig& machine) {
   machine.clusters = 1;
-  machine.placement = processors::Placement::shared;
-  machine.l2.sharing = processors::SecondLevel::none;
+  machine.placement = processors::machine::Placement::shared;
+  machine.l2.sharing = processors::machine::SecondLevel::none;
   machine.interconnect.kind = memory::InterconnectKind::bus;
   machine.interconnect.mode = memory::BusMode::held;
   machine.interconnect.arbitration = memory::Arbitration::fifo;
@@ -33,18 +33,18 @@ inline void make_plain(Random& random, processors::MachineConfig& machine) {
   machine.packets.width = 1;
   machine.packets.height = 1;
   machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};  // no pixel is traced in no time
-  machine.host.assignment =
-      random() % 2 == 0 ? processors::Assignment::interleaved : processors::Assignment::blocks;
+  machine.host.assignment = random() % 2 == 0 ? processors::machine::Assignment::interleaved
+                                              : processors::machine::Assignment::blocks;
 }
 
-class NaivePath final : public processors::Observer {
+class NaivePath final : public processors::walk::Observer {
  public:
-  NaivePath(processors::Observer& next, const processors::MachineConfig& machine)
+  NaivePath(processors::walk::Observer& next, const processors::machine::MachineConfig& machine)
       : next_(next), machine_(machine), began_(machine.nodes) {}
 
-  void begin(const processors::ReplayInput& input) override { next_.begin(input); }
-  void spent(std::uint32_t node, processors::NodeState state, sim::Ticks from, sim::Ticks to,
-             processors::PixelPlace pixel) override {
+  void begin(const processors::walk::ReplayInput& input) override { next_.begin(input); }
+  void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
+             processors::walk::PixelPlace pixel) override {
     next_.spent(node, state, from, to, pixel);
     spans_.push_back({node, from, to, state});
   }
@@ -69,7 +69,7 @@ class NaivePath final : public processors::Observer {
       if (tenure) {
         node = tenure->node;
         at = tenure->start;
-        add_piece(path, {at, tenure->end, node, processors::PathKind::transfer});
+        add_piece(path, {at, tenure->end, node, processors::path::PathKind::transfer});
         tenure = at == tenure->ask ? std::nullopt : ending(tenures, at, std::nullopt);
       } else if (const Span* const work = work_ending(node, at)) {
         add_piece(path, {work->from, at, node});
@@ -85,7 +85,7 @@ class NaivePath final : public processors::Observer {
   struct Span {
     std::uint32_t node;
     sim::Ticks from, to;
-    processors::NodeState state;
+    processors::walk::NodeState state;
   };
   struct Tenure {
     sim::Ticks ask = 0;
@@ -99,7 +99,7 @@ class NaivePath final : public processors::Observer {
   [[nodiscard]] sim::Ticks finish_of(std::uint32_t node) const {
     sim::Ticks finish = 0;
     for (const Span& span : spans_) {
-      if (span.node == node && span.state != processors::NodeState::idle) {
+      if (span.node == node && span.state != processors::walk::NodeState::idle) {
         finish = std::max(finish, span.to);
       }
     }
@@ -107,7 +107,7 @@ class NaivePath final : public processors::Observer {
   }
   [[nodiscard]] const Span* work_ending(std::uint32_t node, sim::Ticks at) const {
     for (const Span& span : spans_) {
-      if (span.node == node && span.to == at && span.state == processors::NodeState::working) {
+      if (span.node == node && span.to == at && span.state == processors::walk::NodeState::working) {
         return &span;
       }
     }
@@ -129,9 +129,9 @@ class NaivePath final : public processors::Observer {
     std::vector<Tenure> tenures;
     for (std::size_t i = 0; i < spans_.size(); ++i) {
       const Span& span = spans_[i];
-      if (span.state == processors::NodeState::transfer) {
+      if (span.state == processors::walk::NodeState::transfer) {
         const bool waited = i > 0 && spans_[i - 1].node == span.node && spans_[i - 1].to == span.from &&
-                            spans_[i - 1].state == processors::NodeState::interconnect_wait;
+                            spans_[i - 1].state == processors::walk::NodeState::interconnect_wait;
         tenures.push_back({waited ? spans_[i - 1].from : span.from, false, span.node, span.to - span.from});
       }
     }
@@ -155,8 +155,8 @@ class NaivePath final : public processors::Observer {
     return tenures;
   }
 
-  processors::Observer& next_;
-  const processors::MachineConfig& machine_;
+  processors::walk::Observer& next_;
+  const processors::machine::MachineConfig& machine_;
   std::vector<std::vector<sim::Ticks>> began_;  // of each node: when its packets began
   std::vector<Span> spans_;
 };

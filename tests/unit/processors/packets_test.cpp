@@ -13,6 +13,11 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace node;
+using namespace walk;
+
 namespace {
 
 TEST(Packets, CoverEveryPixelOnceInEveryOrder) {

@@ -14,6 +14,9 @@
 #include "sim/error.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 using test::Built;

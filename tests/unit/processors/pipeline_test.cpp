@@ -12,6 +12,13 @@
 #include "tests/support/user_error.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace flow;
+using namespace machine;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 using test::pick;
@@ -72,11 +79,11 @@ RC_GTEST_PROP(Pipeline, EqualsASecondImplementation, (std::uint64_t seed)) {
           : test::random_ray_trees(random, side, side, 15, 4, static_cast<std::uint32_t>(pick(random, 1, 4)));
   MachineConfig machine = machine_without_shared_memory(random);
   machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   test::NaiveCounts counts(machine);
   expect_equal(test::NaivePipeline(log, machine, &counts), result);
   counts.expect(result.counts, true);
-  test::expect_equal(replay(log, test::without_counting(machine)), result);
+  test::expect_equal(replay::replay(log, test::without_counting(machine)), result);
   RC_ASSERT(!::testing::Test::HasFailure());
 }
 
@@ -94,10 +101,10 @@ RC_GTEST_PROP(Pipeline, QueuesOfOneAndAnyNumberInFlightNeverDeadlock, (std::uint
   machine.pipeline.queue = 1;
   // replay() itself checks that nothing is left over.
   machine.pipeline.in_flight = 0;
-  const MachineResult most = replay(log, machine);
+  const MachineResult most = replay::replay(log, machine);
   RC_ASSERT(most.flow.most_in_flight <= std::int64_t{machine.clusters} * most_in_flight(machine.pipeline));
   machine.pipeline.in_flight = 1;
-  RC_ASSERT(replay(log, machine).flow.most_in_flight <= std::int64_t{machine.clusters});
+  RC_ASSERT(replay::replay(log, machine).flow.most_in_flight <= std::int64_t{machine.clusters});
 }
 
 // How often a ray's walk changes its stage, and how it ends; a plain reading of the rules.
@@ -138,7 +145,7 @@ RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)
   machine.network.kind = memory::NetworkKind::ideal;
   machine.host.occupancy_cycles = 0;
   machine.host.latency_cycles = pick(random, 0, 9);
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
 
   const sim::Ticks way = machine.network.clock.cycles(machine.network.hop_cycles);
   const sim::Ticks send = machine.clock.cycles(machine.messages.send_cycles);
@@ -170,7 +177,7 @@ RC_GTEST_PROP(Pipeline, OneRayAtATimeTakesTheSumOfItsParts, (std::uint64_t seed)
   MachineConfig one = machine;
   one.scheme = Scheme::image;
   one.nodes = 1;
-  const TimeDivision whole = replay(log, one).time();
+  const TimeDivision whole = replay::replay(log, one).time();
   const TimeDivision parts = result.time();
   for (const Activity a :
        {Activity::traversal, Activity::intersection, Activity::transfer, Activity::bank_access}) {
@@ -207,7 +214,7 @@ TEST(Pipeline, ASaturatedPipelineTakesTheTimeOfItsSlowestStage) {
   machine.pipeline.shade = 1;
   machine.host.latency_cycles = 0;
   machine.operations = {1, 1, 1, 1, 1, 1, 1, 1};
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   sim::Ticks slowest = 0;
   for (const NodeStatistics& node : result.nodes) {
     sim::Ticks busy = 0;
@@ -226,7 +233,7 @@ TEST(Pipeline, ASaturatedPipelineTakesTheTimeOfItsSlowestStage) {
 }
 
 void expect_refused(const WorkLog& log, const MachineConfig& machine, const std::string& why) {
-  const std::string message = test::user_error_of([&] { (void)replay(log, machine); });
+  const std::string message = test::user_error_of([&] { (void)replay::replay(log, machine); });
   EXPECT_NE(message.find(why), std::string::npos) << message;
 }
 
@@ -249,7 +256,7 @@ TEST(Pipeline, RefusesWhatCannotBeBuilt) {
   machine.pipeline.in_flight = 12;
   expect_refused(log, machine, "more than 11");
   machine.pipeline.in_flight = 11;
-  EXPECT_GT(replay(log, machine).end, 0);
+  EXPECT_GT(replay::replay(log, machine).end, 0);
   machine.build.sharing = Sharing::none;
   expect_refused(log, machine, "build.sharing");
 }

@@ -12,11 +12,14 @@
 #include "studies/stability/icosphere.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 /// A unit sphere, wound counter-clockwise seen from outside.
 scenes::Scene icosphere() {
-  const studies::Icosphere sphere(3);
+  const studies::stability::Icosphere sphere(3);
   scenes::Scene scene;
   scene.materials.emplace_back();
   scene.positions = sphere.vertices;

@@ -11,6 +11,9 @@
 #include "tests/support/valid_log.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 /// A root branch with a leaf of three entries and an empty leaf; one pixel.

@@ -14,6 +14,9 @@
 #include "tests/support/valid_log.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 using scenes::Quadric;

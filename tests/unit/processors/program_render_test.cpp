@@ -16,6 +16,9 @@
 #include "tests/support/valid_log.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 using test::Built;

@@ -18,6 +18,9 @@
 #include "tests/unit/processors/program_scenes.h"
 
 namespace marti::processors {
+
+using namespace program;
+
 namespace {
 
 using test::Built;

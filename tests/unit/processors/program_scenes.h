@@ -25,8 +25,8 @@ struct Built {
         triangles(std::make_shared<const accel::TriangleSet>(scene)),
         structure(accel::make_structure(kind, triangles)) {}
 
-  [[nodiscard]] Frame render(const RenderOptions& options, unsigned threads = 1) const {
-    return processors::render(scene, *triangles, *structure, options, threads);
+  [[nodiscard]] program::Frame render(const program::RenderOptions& options, unsigned threads = 1) const {
+    return processors::program::render(scene, *triangles, *structure, options, threads);
   }
 };
 
@@ -59,11 +59,11 @@ inline scenes::Scene looking_down(double height) {
 }
 
 /// One pixel: the ray through the middle of the view.
-inline RenderOptions one_pixel(std::uint32_t max_depth = 1) {
+inline program::RenderOptions one_pixel(std::uint32_t max_depth = 1) {
   return {.width = 1, .height = 1, .max_depth = max_depth};
 }
 
-inline bool same_bytes(const Image& a, const Image& b) {
+inline bool same_bytes(const program::Image& a, const program::Image& b) {
   return a.width == b.width && a.height == b.height &&
          std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }

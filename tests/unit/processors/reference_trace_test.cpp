@@ -11,6 +11,13 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace passes;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 /// A plain cache: for each set a list, the next victim last.
@@ -85,7 +92,7 @@ RC_GTEST_PROP(ReferenceTraces, GiveAnotherCacheTheSameHitsAndMisses, (std::uint6
   ReferenceTrace trace;
   ReplayOptions options;
   options.observer = &trace;
-  const MachineResult result = replay(log, machine, options);
+  const MachineResult result = replay::replay(log, machine, options);
   RC_ASSERT(trace.nodes() == machine.all_nodes());
   for (std::uint32_t node = 0; node < trace.nodes(); ++node) {
     const Hits found = simulate(trace, node, machine.cache);
@@ -106,7 +113,7 @@ TEST(ReferenceTraces, AreInProgramOrderWithPixelsAtTheirEnds) {
   ReferenceTrace trace;
   ReplayOptions options;
   options.observer = &trace;
-  (void)replay(log, machine, options);
+  (void)replay::replay(log, machine, options);
   std::vector<memory::Address> pixels;
   trace.for_each(0, [&](const Reference& reference) {
     if (reference.write) {

@@ -14,6 +14,12 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace flow;
+using namespace machine;
+using namespace program;
+
 namespace {
 
 // Parents, from the children that branches name.

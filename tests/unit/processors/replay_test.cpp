@@ -21,6 +21,13 @@
 #include "tests/support/traced_lines.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 // Another machine that may share the pass that strips `machine`'s log: with other ways, clocks and memories.
@@ -58,12 +65,12 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
   if (both[0] == nullptr) {
     return;
   }
-  test::expect_equal(replay(log, machine), replay(log, machine, {.stripped = both[0].get()}));
+  test::expect_equal(replay::replay(log, machine), replay::replay(log, machine, {.stripped = both[0].get()}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
   // Made alone it is the same log.
   RC_ASSERT(StrippedLog::make(log, machine)->bytes_of_words() == both[0]->bytes_of_words());
   if (StrippedLog::key_of(other) == both[1]->key()) {
-    test::expect_equal(replay(log, other), replay(log, other, {.stripped = both[1].get()}));
+    test::expect_equal(replay::replay(log, other), replay::replay(log, other, {.stripped = both[1].get()}));
     RC_ASSERT(!::testing::Test::HasFatalFailure());
   }
 }
@@ -97,8 +104,8 @@ RC_GTEST_PROP(Replay, ObserversAreToldAsMuchOfAStrippedLog, (std::uint64_t seed)
   }
   Told whole;
   Told less;
-  (void)replay(log, machine, {.observer = &whole});
-  (void)replay(log, machine, {.observer = &less, .stripped = stripped.get()});
+  (void)replay::replay(log, machine, {.observer = &whole});
+  (void)replay::replay(log, machine, {.observer = &less, .stripped = stripped.get()});
   RC_ASSERT(!whole.told.empty());
   RC_ASSERT(whole.told == less.told);
 }
@@ -108,7 +115,8 @@ RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed
   const WorkLog log = test::random_log(random, 9, 7);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
-  test::expect_equal(replay(log, machine), replay(log, machine, {.start_seed = random() | 1U}));
+  test::expect_equal(replay::replay(log, machine),
+                     replay::replay(log, machine, {.start_seed = random() | 1U}));
   RC_ASSERT(!::testing::Test::HasFatalFailure());
 }
 
@@ -117,14 +125,14 @@ RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t
   const WorkLog log = test::random_log(random, 8, 8);
   MachineConfig machine = test::random_machine(random);
   test::add_random_second_level(random, machine);
-  const MachineResult base = replay(log, machine);
+  const MachineResult base = replay::replay(log, machine);
   for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
     MachineConfig slow = machine;
     for (sim::Clock* clock : {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock,
                               &slow.local.clock, &slow.network.clock}) {
       *clock = sim::Clock::from_period(clock->period() * scale);
     }
-    const MachineResult scaled = replay(log, slow);
+    const MachineResult scaled = replay::replay(log, slow);
     RC_ASSERT(scaled.end == base.end * scale);
     RC_ASSERT(scaled.events == base.events);
     for (std::size_t n = 0; n < base.nodes.size(); ++n) {
@@ -169,7 +177,7 @@ TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
     machine.write_buffer = 4096;
     machine.host.latency_cycles = 0;
     machine.host.occupancy_cycles = 0;
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     const ReferenceCounts references = result.references();
     const sim::Ticks expected = compute_of(log, machine) +
                                 references.all_hits() * machine.clock.cycles(machine.cache.hit_cycles) +
@@ -192,7 +200,7 @@ TEST(Replay, OneNodeOnABusWithSlowPixelsIsExactToo) {
     machine.host.occupancy_cycles = 0;
     // A bank must be free again before the next read can reach it.
     machine.banks.busy_cycles = machine.banks.access_cycles;
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     const ReferenceCounts references = result.references();
     EXPECT_EQ(result.nodes[0].finish,
               compute_of(log, machine) +
@@ -208,14 +216,14 @@ TEST(Replay, ACacheLargerThanTheDatabaseMissesOncePerNodeAndDistinctLine) {
   machine.nodes = 1;
   machine.cache.cache.size = 1 << 20;
   machine.cache.cache.ways = memory::full_ways;
-  const MachineResult one = replay(log, machine);
+  const MachineResult one = replay::replay(log, machine);
   std::set<std::uint32_t> lines;
   for (const test::TracedLine& traced : test::trace_node(log, machine, 0)) {
     lines.insert(traced.line);
   }
   EXPECT_EQ(one.references().all_misses(), static_cast<std::int64_t>(lines.size()));
   machine.nodes = 7;
-  const MachineResult seven = replay(log, machine);
+  const MachineResult seven = replay::replay(log, machine);
   EXPECT_LE(seven.references().all_misses(), 7 * static_cast<std::int64_t>(lines.size()));
   EXPECT_GE(seven.references().all_misses(), static_cast<std::int64_t>(lines.size()));
 }
@@ -225,21 +233,21 @@ TEST(Replay, RefusesWhatCannotBeBuiltOrTimed) {
   const WorkLog log = test::random_log(random, 4, 4);
   MachineConfig machine;
   machine.nodes = 0;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.clusters = 1U << 16U;
   machine.nodes = 1U << 16U;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.cache.cache.line = 1;
   machine.layout.section_alignment = 1U << 31U;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.clock = sim::Clock::from_period(std::int64_t{1} << 60U);
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   machine = {};
   machine.host.latency_cycles = std::int64_t{1} << 62U;
-  EXPECT_THROW((void)replay(log, machine), sim::UserError);
+  EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
 }
 
 TEST(Replay, PixelWritesThatSwampACrossbarKeepTheLawsToo) {
@@ -251,7 +259,7 @@ TEST(Replay, PixelWritesThatSwampACrossbarKeepTheLawsToo) {
   machine.interconnect.cycles_per_beat = 100'000;
   machine.banks.count = 1;
   machine.banks.busy_cycles = 0;
-  EXPECT_GT(replay(log, machine).end, 0) << "replay checks its result itself";
+  EXPECT_GT(replay::replay(log, machine).end, 0) << "replay checks its result itself";
 }
 
 TEST(Replay, OneNodeOfADistributedMachineHasAllInItsOwnMemory) {
@@ -264,9 +272,9 @@ TEST(Replay, OneNodeOfADistributedMachineHasAllInItsOwnMemory) {
     machine.nodes = 1;
     machine.distribution.interleave = 1U << 12U;
     machine.placement = Placement::distributed;
-    const MachineResult distributed = replay(log, machine);
+    const MachineResult distributed = replay::replay(log, machine);
     machine.placement = Placement::replicated;
-    const MachineResult replicated = replay(log, machine);
+    const MachineResult replicated = replay::replay(log, machine);
     EXPECT_EQ(distributed.nodes[0].finish, replicated.nodes[0].finish);
     EXPECT_EQ(distributed.nodes[0].time[static_cast<std::size_t>(Activity::transfer)],
               replicated.nodes[0].time[static_cast<std::size_t>(Activity::transfer)]);
@@ -284,7 +292,7 @@ TEST(Replay, ADistributedDatabaseIsReadWithoutWaitingWhereNobodyIsInTheWay) {
     machine.nodes = 9;
     machine.placement = Placement::distributed;
     machine.network.kind = static_cast<memory::NetworkKind>(test::pick(random, 0, 4));
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     const TimeDivision time = result.time();
     EXPECT_EQ(time[static_cast<std::size_t>(Activity::interconnect_wait)], 0);
     EXPECT_EQ(time[static_cast<std::size_t>(Activity::bank_wait)], 0);
@@ -305,7 +313,7 @@ TEST(Replay, SixtyFiveThousandNodesMayHoldADatabaseTogether) {
     machine.packets = {1, 1, PacketOrder::scanline};
     machine.placement = Placement::distributed;
     machine.network.kind = kind;
-    EXPECT_GT(replay(log, machine).end, 0);
+    EXPECT_GT(replay::replay(log, machine).end, 0);
     EXPECT_LT(host_bytes(machine), std::uint64_t{1} << 30U);
   }
 }
@@ -322,7 +330,7 @@ TEST(Replay, RefusesADistributedDatabaseThatCannotBeSpread) {
     MachineConfig machine;
     machine.placement = Placement::distributed;
     spoil(machine);
-    EXPECT_THROW((void)replay(log, machine), sim::UserError);
+    EXPECT_THROW((void)replay::replay(log, machine), sim::UserError);
   }
 }
 
@@ -335,11 +343,11 @@ TEST(Replay, ArbitrationChangesWhoWaitsNotWhatIsDone) {
   machine.host.assignment = Assignment::interleaved;
   machine.packets = {2, 2, PacketOrder::scanline};
   machine.interconnect.cycles_per_beat = 20;
-  const MachineResult fifo = replay(log, machine);
+  const MachineResult fifo = replay::replay(log, machine);
   machine.interconnect.arbitration = memory::Arbitration::fixed_priority;
-  const MachineResult fixed = replay(log, machine);
+  const MachineResult fixed = replay::replay(log, machine);
   machine.interconnect.arbitration = memory::Arbitration::round_robin;
-  const MachineResult turns = replay(log, machine);
+  const MachineResult turns = replay::replay(log, machine);
   for (const MachineResult* other : {&fixed, &turns}) {
     EXPECT_EQ(other->references().misses, fifo.references().misses);
     EXPECT_EQ(other->clusters[0].interconnect.busy, fifo.clusters[0].interconnect.busy);

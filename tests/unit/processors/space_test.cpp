@@ -14,6 +14,13 @@
 #include "tests/support/user_error.h"
 
 namespace marti::processors {
+
+using namespace cost;
+using namespace flow;
+using namespace machine;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 MachineConfig random_space(test::Random& random) {
@@ -39,11 +46,11 @@ RC_GTEST_PROP(Space, EqualsASecondModelInEveryCounter, (std::uint64_t seed)) {
       machine.cache.cache.replacement = memory::Replacement::fifo;
     }
     machine.count = {machine.cache.organisation != CacheOrganisation::none, true, true};
-    const MachineResult result = replay(log, machine);
+    const MachineResult result = replay::replay(log, machine);
     test::NaiveCounts counts(machine);
     MachineResult plain = test::NaiveSpace(log, machine, &counts).run();
     counts.expect(result.counts, true);
-    test::expect_equal(replay(log, test::without_counting(machine)), result);
+    test::expect_equal(replay::replay(log, test::without_counting(machine)), result);
     plain.clusters = result.clusters;  // no node uses a memory that is shared
     test::expect_equal(result, plain);
     RC_ASSERT(!::testing::Test::HasFailure());
@@ -55,7 +62,7 @@ RC_GTEST_PROP(Space, WhatComesToANodeLeavesIt, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::any_log(random);
   const MachineConfig machine = random_space(random);
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   std::int64_t taken = 0;
   std::int64_t passed_on = 0;
   for (const FlowCounts& node : result.flow.nodes) {
@@ -81,7 +88,7 @@ RC_GTEST_PROP(Space, WithOneRegionOnlyTheHostSends, (std::uint64_t seed)) {
   const WorkLog log = test::random_tree_log(random, 6, 6);
   MachineConfig machine = random_space(random);
   machine.space.level = 1;
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   std::int64_t messages = 0;
   for (const memory::NetworkStatistics& network : result.flow.networks) {
     messages += network.messages;
@@ -105,7 +112,7 @@ RC_GTEST_PROP(Space, OneNodeTakesTheSumOfAllCosts, (std::uint64_t seed)) {
   machine.host.latency_cycles = machine.host.occupancy_cycles = 0;
   machine.network.kind = memory::NetworkKind::ideal;
   machine.network.hop_cycles = machine.network.cycles_per_beat = 0;
-  const MachineResult result = replay(log, machine);
+  const MachineResult result = replay::replay(log, machine);
   const NodeStatistics& node = result.nodes[0];
   TimeDivision costs{};
   add_counted_time(step_ticks(machine, log), node.steps, node.references.all_hits(), costs);
@@ -129,7 +136,7 @@ TEST(Space, ImpossibleMachinesAreRefused) {
     MachineConfig machine;
     machine.scheme = Scheme::space;
     spoil(machine);
-    return test::user_error_of([&] { (void)replay(log, machine); });
+    return test::user_error_of([&] { (void)replay::replay(log, machine); });
   };
   EXPECT_EQ(refusal_of([](MachineConfig& m) { m.space.level = 0; }), "space.level: the root is level 1");
   EXPECT_NE(refusal_of([](MachineConfig& m) { m.space.queue = 0; }).find("space.queue"), std::string::npos);

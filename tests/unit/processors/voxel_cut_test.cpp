@@ -19,6 +19,11 @@
 #include "tests/support/valid_log.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace program;
+using namespace replay;
+
 namespace {
 
 using test::Built;
@@ -335,11 +340,11 @@ TEST_P(CutFrames, ReplayTakesTheirSteps) {
   const LogTotals totals = totals_of(*frame.log);
   MachineConfig machine;
   machine.nodes = 3;
-  const MachineResult result = replay(*frame.log, machine);
+  const MachineResult result = replay::replay(*frame.log, machine);
   EXPECT_EQ(static_cast<std::uint64_t>(result.steps().cuts), totals.cuts);
   EXPECT_EQ(static_cast<std::uint64_t>(result.steps().passes), totals.passes);
   const Frame exact = built.render({.width = 48, .height = 48, .record = true}, 2);
-  EXPECT_EQ(result.database_bytes > replay(*exact.log, machine).database_bytes, frame.voxels > 0)
+  EXPECT_EQ(result.database_bytes > replay::replay(*exact.log, machine).database_bytes, frame.voxels > 0)
       << "averaged materials are records of the database";
 }
 

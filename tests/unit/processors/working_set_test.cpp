@@ -15,6 +15,13 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
+
+using namespace machine;
+using namespace passes;
+using namespace program;
+using namespace replay;
+using namespace walk;
+
 namespace {
 
 MachineConfig random_cached_machine(test::Random& random) {
@@ -47,7 +54,7 @@ RC_GTEST_PROP(WorkingSet, IsThatOfCachesSimulatedOneByOne, (std::uint64_t seed))
   const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_cached_machine(random);
   ReferenceTrace trace;
-  const MachineResult result = replay(log, machine, {.observer = &trace});
+  const MachineResult result = replay::replay(log, machine, {.observer = &trace});
   const WorkingSet set = working_set(trace);
   check_working_set(set, machine, result);
   RC_ASSERT(set.line == machine.cache.cache.line);
@@ -81,7 +88,7 @@ RC_GTEST_PROP(WorkingSet, IsTheSameWithAnyNumberOfThreads, (std::uint64_t seed))
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 10, 10);
   PacketsOfNodes packets_of_nodes;
-  (void)replay(log, random_cached_machine(random), {.observer = &packets_of_nodes});
+  (void)replay::replay(log, random_cached_machine(random), {.observer = &packets_of_nodes});
   const WorkingSet one = working_set(packets_of_nodes, 1);
   const WorkingSet three = working_set(packets_of_nodes, 3);
   for (std::size_t i = 0; i < one.caches.size(); ++i) {
@@ -97,18 +104,18 @@ RC_GTEST_PROP(WorkingSet, ForetellsMachinesWithOtherCachesWherePacketsAreFixed, 
   machine.cache.organisation = CacheOrganisation::unified;
   machine.host.assignment = Assignment::interleaved;
   PacketsOfNodes packets_of_nodes;
-  (void)replay(log, machine, {.observer = &packets_of_nodes});
+  (void)replay::replay(log, machine, {.observer = &packets_of_nodes});
   const WorkingSet set = working_set(packets_of_nodes);
   RC_ASSERT(set.any_cache);
   machine.cache.cache.replacement = memory::Replacement::lru;
   const auto lines = static_cast<std::uint32_t>(test::pick(random, 1, 60));
   machine.cache.cache.size = std::uint64_t{lines} * machine.cache.cache.line;
   machine.cache.cache.ways = memory::full_ways;
-  RC_ASSERT(replay(log, machine).references().all_misses() == set.caches[0].distances.misses(lines));
+  RC_ASSERT(replay::replay(log, machine).references().all_misses() == set.caches[0].distances.misses(lines));
   if (const std::uint32_t sets = set.caches[0].ways.sets; sets > 1) {
     machine.cache.cache.ways = static_cast<std::uint32_t>(test::pick(random, 1, counted_ways));
     machine.cache.cache.size = std::uint64_t{sets} * machine.cache.cache.ways * machine.cache.cache.line;
-    RC_ASSERT(replay(log, machine).references().all_misses() ==
+    RC_ASSERT(replay::replay(log, machine).references().all_misses() ==
               set.caches[0].ways.misses(machine.cache.cache.ways));
   }
 }
@@ -121,7 +128,7 @@ TEST(WorkingSet, SaysForWhichPacketsItHolds) {
     machine.nodes = nodes;
     machine.host.assignment = assignment;
     PacketsOfNodes packets_of_nodes;
-    (void)replay(log, machine, {.observer = &packets_of_nodes});
+    (void)replay::replay(log, machine, {.observer = &packets_of_nodes});
     return working_set(packets_of_nodes).any_cache;
   };
   EXPECT_TRUE(holds_for_any_cache(1, Assignment::dynamic));
@@ -135,7 +142,7 @@ TEST(WorkingSet, ACountThatDiffersIsAFaultOfOurs) {
   const WorkLog log = test::random_log(random, 6, 6);
   const MachineConfig machine;
   PacketsOfNodes packets_of_nodes;
-  MachineResult result = replay(log, machine, {.observer = &packets_of_nodes});
+  MachineResult result = replay::replay(log, machine, {.observer = &packets_of_nodes});
   const WorkingSet set = working_set(packets_of_nodes);
   EXPECT_NO_THROW(check_working_set(set, machine, result));
   --result.nodes[1].references.hits[0];

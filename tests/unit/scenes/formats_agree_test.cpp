@@ -29,9 +29,9 @@ void expect_same_triangles(const Scene& a, const Scene& b) {
 }
 
 void expect_same_image(const processors::test::Built& a, const Scene& b) {
-  const processors::RenderOptions options{.width = 40, .height = 40, .max_depth = 2};
-  const processors::Frame expected = a.render(options);
-  const processors::Frame frame = processors::test::Built(b, "octree").render(options);
+  const processors::program::RenderOptions options{.width = 40, .height = 40, .max_depth = 2};
+  const processors::program::Frame expected = a.render(options);
+  const processors::program::Frame frame = processors::test::Built(b, "octree").render(options);
   EXPECT_EQ(frame.hit_hash, expected.hit_hash);
   EXPECT_EQ(frame.image.pixels, expected.image.pixels);
   const auto lit = std::count_if(frame.image.pixels.begin(), frame.image.pixels.end(),

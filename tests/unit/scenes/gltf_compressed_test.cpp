@@ -149,7 +149,7 @@ TEST(Meshopt, GivesTheMeshExactly) {
   const RandomMesh mesh(5, 7);
   const Scene plain = folder.open("plain.glb", mesh.gltf().glb());
   const processors::test::Built built(plain, "octree");
-  const processors::RenderOptions options{.width = 40, .height = 40, .max_depth = 2};
+  const processors::program::RenderOptions options{.width = 40, .height = 40, .max_depth = 2};
   for (const bool exponents : {false, true}) {
     const Scene exact = folder.open("exact.glb", with_meshopt(mesh, "INDICES", exponents).glb());
     ASSERT_EQ(exact.triangles.size(), plain.triangles.size());

@@ -10,6 +10,9 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 sim::Config config_of(std::string_view text = "", const std::vector<std::string>& assignments = {}) {

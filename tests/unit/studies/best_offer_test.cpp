@@ -10,6 +10,10 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace keys;
+
 namespace {
 
 // Few different figures, so that many are equal.
@@ -85,7 +89,7 @@ RC_GTEST_PROP(Pareto, HoldsTheBestForEveryBudget, ()) {
 
 TEST(Cost, IsThatOfEachPart) {
   const Prices prices{1000.0, 100.0, 10.0, 3.0, 0.5, 7.0, 20.0, 11.0};
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   machine.clusters = 2;
   machine.nodes = 3;
   machine.contexts = 4;
@@ -98,17 +102,17 @@ TEST(Cost, IsThatOfEachPart) {
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node + 5 * 8 * 7.0 + 5 * 11.0));
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node));
-  machine.l2.sharing = processors::SecondLevel::shared;
+  machine.l2.sharing = processors::machine::SecondLevel::shared;
   machine.l2.cache.size = 8192;
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * node + 8 * 0.5));
-  machine.l2.sharing = processors::SecondLevel::private_caches;
+  machine.l2.sharing = processors::machine::SecondLevel::private_caches;
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (node + 8 * 0.5)));
-  machine.l2.sharing = processors::SecondLevel::none;
-  machine.cache.organisation = processors::CacheOrganisation::split;
+  machine.l2.sharing = processors::machine::SecondLevel::none;
+  machine.cache.organisation = processors::machine::CacheOrganisation::split;
   machine.cache.split_sizes = {1024, 1024, 1024, 1024};
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (node + 2 * 3.0)));
-  machine.cache.organisation = processors::CacheOrganisation::none;
-  machine.placement = processors::Placement::distributed;
+  machine.cache.organisation = processors::machine::CacheOrganisation::none;
+  machine.placement = processors::machine::Placement::distributed;
   machine.network.width = 4;
   EXPECT_DOUBLE_EQ(cost_of(prices, machine), 2 * (1000.0 + 3 * (130.0 + 4 * 20.0)));
 }

@@ -10,10 +10,10 @@
 namespace marti::tests {
 namespace {
 
-using studies::LevelCount;
-using studies::LevelOutcome;
-using studies::RunOutcomes;
-using studies::Table;
+using studies::paper::LevelCount;
+using studies::paper::LevelOutcome;
+using studies::paper::RunOutcomes;
+using studies::tables::Table;
 
 LevelCount level(std::uint64_t branches, std::uint64_t leaves) {
   LevelCount count;
@@ -23,11 +23,11 @@ LevelCount level(std::uint64_t branches, std::uint64_t leaves) {
 }
 
 TEST(InitialLevels, AreTheListTheRulesAndTheWholeTree) {
-  studies::PaperConfig config;
+  studies::paper::PaperConfig config;
   config.levels = {1, 2, 4, 9};
   config.rules = {3.0, 10.0, 1e6};
   const std::vector<LevelCount> levels = {level(1, 0), level(8, 0), level(1, 4), level(1, 7), level(0, 8)};
-  const auto chosen = initial_levels(config, levels);
+  const auto chosen = studies::paper::initial_levels(config, levels);
   ASSERT_EQ(chosen.size(), 5U);
   EXPECT_EQ(chosen[0].level, 1U);
   EXPECT_EQ(chosen[1].level, 2U);
@@ -41,18 +41,18 @@ TEST(InitialLevels, AreTheListTheRulesAndTheWholeTree) {
 }
 
 TEST(Saved, IsAFractionOfTheWhole) {
-  EXPECT_EQ(studies::saved(55, 100), 0.45);
-  EXPECT_EQ(studies::saved(100, 100), 0.0);
-  EXPECT_EQ(studies::saved(150, 100), -0.5);
-  EXPECT_EQ(studies::saved(5, 0), 0.0);
+  EXPECT_EQ(studies::paper::saved(55, 100), 0.45);
+  EXPECT_EQ(studies::paper::saved(100, 100), 0.0);
+  EXPECT_EQ(studies::paper::saved(150, 100), -0.5);
+  EXPECT_EQ(studies::paper::saved(5, 0), 0.0);
 }
 
 RunOutcomes two_levels() {
   RunOutcomes run;
   run.run = {"gears:2", 2};
   const auto building = [](sim::Ticks ticks) {
-    processors::TimeDivision time{};
-    time[static_cast<std::size_t>(processors::Activity::building)] = ticks;
+    processors::cost::TimeDivision time{};
+    time[static_cast<std::size_t>(processors::cost::Activity::building)] = ticks;
     return time;
   };
   run.levels.push_back({{3, false, {10.0}}, 20, 1000, building(80), 4, 33, 2, 55});
@@ -61,7 +61,7 @@ RunOutcomes two_levels() {
 }
 
 TEST(BuildingTable, ComparesWithTheWholeTree) {
-  const Table table = building_table(2, two_levels());
+  const Table table = studies::paper::building_table(2, two_levels());
   EXPECT_EQ(table.name(), "table4");
   ASSERT_EQ(table.rows().size(), 2U);
   EXPECT_EQ(std::get<std::int64_t>(table.at(0, "total")), 1020);
@@ -76,7 +76,7 @@ TEST(BuildingTable, ComparesWithTheWholeTree) {
 
 TEST(Savings, AreThoseOfTheRulesLevel) {
   const std::vector<RunOutcomes> runs = {two_levels()};
-  const Table table = savings_table(runs, std::vector{3.0, 10.0});
+  const Table table = studies::paper::savings_table(runs, std::vector{3.0, 10.0});
   ASSERT_EQ(table.rows().size(), 2U);
   EXPECT_EQ(std::get<std::int64_t>(table.at(0, "level")), 9);
   EXPECT_EQ(std::get<double>(table.at(0, "memory_saved")), 0.0);

@@ -12,22 +12,22 @@
 namespace marti::tests {
 namespace {
 
-using studies::Cell;
-using studies::ChartSpecification;
-using studies::ColumnType;
-using studies::Table;
+using studies::tables::Cell;
+using studies::tables::ChartSpecification;
+using studies::tables::ColumnType;
+using studies::tables::Table;
 
 TEST(Chart, EverySpecificationIsAVegaLiteChartOfATable) {
   std::string before;
-  for (const ChartSpecification& chart : studies::chart_specifications()) {
+  for (const ChartSpecification& chart : studies::tables::chart_specifications()) {
     EXPECT_LT(before, chart.name);
     before = chart.name;
     const nlohmann::json specification = nlohmann::json::parse(chart.json);
     EXPECT_EQ(specification["$schema"], "https://vega.github.io/schema/vega-lite/v6.json") << chart.name;
     EXPECT_TRUE(specification.contains("title")) << chart.name;
-    EXPECT_FALSE(table_of(chart).empty());
+    EXPECT_FALSE(studies::tables::table_of(chart).empty());
   }
-  EXPECT_GE(studies::chart_specifications().size(), 4U);
+  EXPECT_GE(studies::tables::chart_specifications().size(), 4U);
 }
 
 TEST(Chart, RowsAreInlinedAndTheRestIsKept) {
@@ -39,7 +39,7 @@ TEST(Chart, RowsAreInlinedAndTheRestIsKept) {
                {"c", ColumnType::text, "", ""}});
   table.add_row({std::numeric_limits<std::int64_t>::max(), 0.1, "</script>\"\n"});
   table.add_row({Cell(), std::numeric_limits<double>::infinity(), "\xff"});
-  const nlohmann::json filled = nlohmann::json::parse(fill_chart(chart, table));
+  const nlohmann::json filled = nlohmann::json::parse(studies::tables::fill_chart(chart, table));
   EXPECT_EQ(filled["mark"], "bar");
   EXPECT_EQ(filled["data"]["name"], "t");
   ASSERT_EQ(filled["data"]["values"].size(), 2U);
@@ -63,10 +63,10 @@ Table table_with_lines(std::size_t lines) {
 TEST(Chart, MoreThanFourLinesAreSharedOutAmongPanels) {
   const ChartSpecification chart{"c", R"({"title": "x", "data": {"name": "t"}, "usermeta": {"lines": "line"},
       "width": 300, "layer": [{"mark": "line", "encoding": {"color": {"field": "line"}}}]})"};
-  const nlohmann::json four = nlohmann::json::parse(fill_chart(chart, table_with_lines(4)));
+  const nlohmann::json four = nlohmann::json::parse(studies::tables::fill_chart(chart, table_with_lines(4)));
   EXPECT_FALSE(four.contains("facet"));
   EXPECT_EQ(four["width"], 300);
-  const nlohmann::json nine = nlohmann::json::parse(fill_chart(chart, table_with_lines(9)));
+  const nlohmann::json nine = nlohmann::json::parse(studies::tables::fill_chart(chart, table_with_lines(9)));
   EXPECT_EQ(nine["facet"]["field"], "panel");
   EXPECT_FALSE(nine.contains("layer"));
   EXPECT_EQ(nine["spec"]["width"], 300);
@@ -83,7 +83,7 @@ TEST(Chart, MoreThanFourLinesAreSharedOutAmongPanels) {
 // A line for each value of a field that a table may have any number of is shared out, too.
 TEST(Chart, ChartsOfManyLinesSayWhatTheirLinesAre) {
   std::set<std::string> shared_out;
-  for (const ChartSpecification& chart : studies::chart_specifications()) {
+  for (const ChartSpecification& chart : studies::tables::chart_specifications()) {
     const nlohmann::json specification = nlohmann::json::parse(chart.json);
     if (specification.contains("usermeta")) {
       shared_out.insert(std::string(chart.name));

@@ -13,10 +13,13 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace keys;
+
 namespace {
 
-using processors::Feature;
-using processors::RefusedPair;
+using processors::machine::Feature;
+using processors::machine::RefusedPair;
 
 // What asks for each feature: a value of a key, and a key in the file that has no use without it.
 struct Asked {
@@ -24,7 +27,7 @@ struct Asked {
   std::string value;
   std::string more;
 };
-const std::array<Asked, processors::features> asked = {{
+const std::array<Asked, processors::machine::features> asked = {{
     {"node.contexts", "4", "node.switch_cycles = 2"},
     {"prefetch.children", "true", "prefetch.outstanding = 2"},
     {"build.sharing", "\"shared\"", "build.initial_level = \"2\""},
@@ -37,12 +40,13 @@ const Asked& asked_of(Feature feature) { return asked[static_cast<std::size_t>(f
 
 std::string line_of(const Asked& one) { return one.key + " = " + one.value + "\n"; }
 
-processors::MachineConfig read(const std::string& text, const std::vector<std::string>& assignments = {}) {
+processors::machine::MachineConfig read(const std::string& text,
+                                        const std::vector<std::string>& assignments = {}) {
   sim::Schema schema;
   declare_frame_keys(schema);
   declare_machine_keys(schema);
   sim::Config config = sim::Config::from_text(schema, text, "machine.toml", assignments);
-  const processors::MachineConfig machine = read_machine(config);
+  const processors::machine::MachineConfig machine = read_machine(config);
   config.refuse_unused();
   return machine;
 }
@@ -50,7 +54,7 @@ processors::MachineConfig read(const std::string& text, const std::vector<std::s
 std::string assignment(const Asked& one) { return one.key + "=" + one.value; }
 
 TEST(CombinationKeys, AFileThatAsksForBothIsRefusedAtTheLineOfTheFirst) {
-  for (const RefusedPair& pair : processors::refused_pairs()) {
+  for (const RefusedPair& pair : processors::machine::refused_pairs()) {
     const Asked& first = asked_of(pair.first);
     const Asked& second = asked_of(pair.second);
     const std::string message =
@@ -66,20 +70,20 @@ TEST(CombinationKeys, AFileThatAsksForBothIsRefusedAtTheLineOfTheFirst) {
 }
 
 TEST(CombinationKeys, OnlyAnotherSchemeSwitchesOffWhatTheFileAsksFor) {
-  for (const RefusedPair& pair : processors::refused_pairs()) {
+  for (const RefusedPair& pair : processors::machine::refused_pairs()) {
     for (const auto& [on, off] : {std::pair(pair.first, pair.second), std::pair(pair.second, pair.first)}) {
       SCOPED_TRACE(asked_of(on).key + ", " + asked_of(off).key);
       const std::string file = "machine.nodes = 16\n" + line_of(asked_of(off)) + asked_of(off).more + "\n";
-      EXPECT_TRUE(has(read(file), off));
+      EXPECT_TRUE(processors::machine::has(read(file), off));
       if (on != Feature::moving_rays) {
         const std::string message =
             test::user_error_of([&] { (void)read(file, {assignment(asked_of(on))}); });
         EXPECT_NE(message.find("does not combine"), std::string::npos) << message;
         continue;
       }
-      const processors::MachineConfig machine = read(file, {assignment(asked_of(on))});
-      EXPECT_TRUE(has(machine, on));
-      EXPECT_FALSE(has(machine, off));
+      const processors::machine::MachineConfig machine = read(file, {assignment(asked_of(on))});
+      EXPECT_TRUE(processors::machine::has(machine, on));
+      EXPECT_FALSE(processors::machine::has(machine, off));
     }
   }
 }

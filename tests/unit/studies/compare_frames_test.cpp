@@ -23,6 +23,12 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace compare;
+using namespace report;
+using namespace run;
+using namespace sweep;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +41,7 @@ const std::string small_scene =
 fs::path write_run(const fs::path& directory, const std::vector<std::string>& assignments) {
   sim::Config config = sim::Config::from_text(run_schema(), small_scene, "test", assignments);
   fs::create_directories(directory);
-  std::ofstream(directory / "result.json", std::ios::binary) << json_of(run(config));
+  std::ofstream(directory / "result.json", std::ios::binary) << json_of(run::run(config));
   return directory;
 }
 
@@ -257,7 +263,7 @@ TEST(CompareFrames, TheTimesOfTwoSweepsAddUp) {
       std::vector<std::string> assignments = more;
       assignments.push_back(std::string("machine.nodes=") + nodes);
       sim::Config config = sim::Config::from_text(run_schema(), small_scene, "test", assignments);
-      runs.push_back(run(config));
+      runs.push_back(run::run(config));
       const std::size_t i = plan.machines.size();
       plan.machines.push_back({test::made_key(i), 0, runs[i].machine, pool.share(runs[i].values)});
       plan.points.push_back({{static_cast<std::int64_t>(std::stoi(nodes))}, i, 0, 1.0});

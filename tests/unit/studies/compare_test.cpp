@@ -26,6 +26,13 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace compare;
+using namespace figures;
+using namespace run;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +44,7 @@ RunResult run_of(const std::vector<std::string>& assignments) {
   sim::Config config = sim::Config::from_text(
       run_schema(), "scene.source = \"teapot:2\"\nimage.width = 16\nimage.height = 12\nmachine.nodes = 4\n",
       "test", assignments);
-  return run(config);
+  return run::run(config);
 }
 
 void write(const fs::path& file, const std::string& text) {

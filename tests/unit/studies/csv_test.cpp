@@ -14,9 +14,9 @@
 namespace marti::tests {
 namespace {
 
-using studies::Cell;
-using studies::ColumnType;
-using studies::Table;
+using studies::tables::Cell;
+using studies::tables::ColumnType;
+using studies::tables::Table;
 
 struct Field {
   std::string text;
@@ -85,7 +85,7 @@ TEST(Csv, HostileTextComesBack) {
   for (const std::string& text : texts) {
     table.add_row({std::int64_t{1}, 0.5, text});
   }
-  const auto records = parse(csv_of(table));
+  const auto records = parse(studies::tables::csv_of(table));
   ASSERT_TRUE(records.has_value());
   ASSERT_EQ(records->size(), texts.size() + 1);
   EXPECT_EQ((*records)[0][2].text, "s");
@@ -99,7 +99,7 @@ TEST(Csv, ACellWithoutValueDiffersFromAnEmptyText) {
   Table table = make_table();
   table.add_row({Cell(), Cell(), Cell()});
   table.add_row({Cell(), Cell(), std::string()});
-  EXPECT_EQ(csv_of(table), "i,r,s\r\n,,\r\n,,\"\"\r\n");
+  EXPECT_EQ(studies::tables::csv_of(table), "i,r,s\r\n,,\r\n,,\"\"\r\n");
 }
 
 TEST(Csv, NumbersComeBackExactly) {
@@ -117,7 +117,7 @@ TEST(Csv, NumbersComeBackExactly) {
     table.add_row({std::numeric_limits<std::int64_t>::min(), real, "x"});
   }
   table.add_row({std::numeric_limits<std::int64_t>::max(), std::numeric_limits<double>::quiet_NaN(), "x"});
-  const auto records = parse(csv_of(table));
+  const auto records = parse(studies::tables::csv_of(table));
   ASSERT_TRUE(records.has_value());
   for (std::size_t i = 0; i < reals.size(); ++i) {
     EXPECT_EQ(std::stoll((*records)[i + 1][0].text), std::numeric_limits<std::int64_t>::min());
@@ -134,7 +134,7 @@ RC_GTEST_PROP(Csv, AnyTextComesBack, (const std::vector<std::string>& texts)) {
   for (const std::string& text : texts) {
     table.add_row({text, text + text});
   }
-  const auto records = parse(csv_of(table));
+  const auto records = parse(studies::tables::csv_of(table));
   RC_ASSERT(records.has_value());
   RC_ASSERT(records->size() == texts.size() + 1);
   for (std::size_t i = 0; i < texts.size(); ++i) {

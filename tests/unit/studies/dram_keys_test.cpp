@@ -11,11 +11,15 @@
 #include "tests/support/configuration_of.h"
 
 namespace marti::studies {
+
+using namespace helps;
+using namespace keys;
+
 namespace {
 
 using memory::DramConfig;
 
-processors::MachineConfig dram_machine_of(std::vector<std::string> assignments) {
+processors::machine::MachineConfig dram_machine_of(std::vector<std::string> assignments) {
   assignments.emplace_back("memory.model=dram");
   sim::Config config = test::configuration_of(assignments);
   return read_machine(config);
@@ -27,7 +31,7 @@ TEST(DramKeys, WithoutOthersTheyMakeThePreset) {
   EXPECT_FALSE(dram_machine_of({"interconnect.kind=ideal"}).banks.dram.has_value());
   for (std::size_t i = 0; i < memory::dram_preset_names.size(); ++i) {
     const DramConfig expected = memory::dram_preset(i);
-    const processors::MachineConfig machine =
+    const processors::machine::MachineConfig machine =
         dram_machine_of({"dram.preset=" + std::string(memory::dram_preset_names[i])});
     ASSERT_TRUE(machine.banks.dram.has_value());
     const DramConfig& dram = *machine.banks.dram;
@@ -44,7 +48,7 @@ TEST(DramKeys, WithoutOthersTheyMakeThePreset) {
 }
 
 TEST(DramKeys, EachReplacesOneFigureOfThePreset) {
-  const processors::MachineConfig machine = dram_machine_of(
+  const processors::machine::MachineConfig machine = dram_machine_of(
       {"dram.policy=frfcfs", "dram.page=closed", "dram.queue=8", "dram.reorder_cap=3", "dram.tck=1000",
        "dram.channels=4", "dram.ranks=2", "dram.row=4KiB", "dram.burst=32B", "dram.trcd=20", "dram.trefi=0",
        "dram.mapping=[\"column:2\", \"channel\", \"column\", \"bank\", \"bank_group\", \"rank\", \"row\"]"});
@@ -69,7 +73,7 @@ TEST(DramKeys, EachReplacesOneFigureOfThePreset) {
 TEST(DramKeys, EveryResourceThatIsTriedChangesTheMemory) {
   const std::vector<std::string> assignments = {"memory.model=dram"};
   sim::Config config = test::configuration_of(assignments);
-  const processors::MachineConfig machine = read_machine(config);
+  const processors::machine::MachineConfig machine = read_machine(config);
   FrameFacts facts;
   facts.packets = 100;
   std::vector<std::string> names;

@@ -10,37 +10,41 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace keys;
+
 namespace {
 
-processors::MachineConfig read_machine_of(const std::string& text,
-                                          const std::vector<std::string>& assignments = {}) {
+processors::machine::MachineConfig read_machine_of(const std::string& text,
+                                                   const std::vector<std::string>& assignments = {}) {
   sim::Schema schema;
   declare_frame_keys(schema);
   declare_machine_keys(schema);
   sim::Config config = sim::Config::from_text(schema, text, "machine.toml", assignments);
-  processors::MachineConfig machine = read_machine(config);
+  processors::machine::MachineConfig machine = read_machine(config);
   config.refuse_unused();
   return machine;
 }
 
 TEST(EnergyKeys, AreOffByDefault) {
-  const processors::MachineConfig machine = read_machine_of("");
+  const processors::machine::MachineConfig machine = read_machine_of("");
   EXPECT_FALSE(machine.energy.on());
 }
 
 TEST(EnergyKeys, ReplaceThePresetsFiguresOneByOne) {
   const std::string preset = "[energy]\npreset = \"22nm\"\n";
-  const processors::EnergyFigures usual = processors::energy_figures(processors::EnergyPreset::nm22);
-  const processors::EnergyFigures kept = read_machine_of(preset + "divide = -1.0\n").energy.figures;
+  const processors::machine::EnergyFigures usual =
+      processors::energy::energy_figures(processors::machine::EnergyPreset::nm22);
+  const processors::machine::EnergyFigures kept = read_machine_of(preset + "divide = -1.0\n").energy.figures;
   EXPECT_EQ(kept.divide, usual.divide);
-  EXPECT_EQ(kept.l1.read, processors::by_fit);
-  const processors::EnergyFigures changed =
+  EXPECT_EQ(kept.l1.read, processors::machine::by_fit);
+  const processors::machine::EnergyFigures changed =
       read_machine_of(preset + "divide = 0.0\nl1_area = 2.5\nleakage_density = 7\n").energy.figures;
   EXPECT_EQ(changed.divide, 0.0);
   EXPECT_EQ(changed.l1.area, 2.5);
   EXPECT_EQ(changed.leakage_density, 7.0);
   EXPECT_EQ(changed.square_root, usual.square_root);
-  EXPECT_EQ(changed.l1.read, processors::by_fit);
+  EXPECT_EQ(changed.l1.read, processors::machine::by_fit);
   EXPECT_EQ(read_machine_of(preset + "voltage = 0.5\n").energy.voltage, 0.5);
 }
 

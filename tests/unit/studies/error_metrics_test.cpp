@@ -13,6 +13,9 @@
 #include "studies/estimate/simulator_interpolation.h"
 
 namespace marti::studies {
+
+using namespace estimate;
+
 namespace {
 
 std::vector<double> random_values(std::mt19937_64& random, std::size_t count, int most) {

@@ -21,6 +21,11 @@
 #include "tests/support/temporary_directory.h"
 
 namespace marti::studies {
+
+using namespace explore;
+using namespace helps;
+using namespace report;
+
 namespace {
 
 const Session& session() {

@@ -21,6 +21,12 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace explore;
+using namespace helps;
+using namespace keys;
+using namespace run;
+
 namespace {
 
 constexpr const char* text = R"([scene]
@@ -53,7 +59,7 @@ class Explored : public testing::Test {
     RunOptions options;
     options.what_helps = what_helps;
     options.prices = read_given_prices(config);
-    return json_of(run(config, std::move(options)));
+    return json_of(run::run(config, std::move(options)));
   }
 
   // The refusal's key, or "accepted".
@@ -186,7 +192,7 @@ TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
   sim::Config config = sim::Config::from_file(schema, file_, all);
   RunOptions options;
   options.prices = read_given_prices(config);
-  EXPECT_EQ(session.answer(settings, Measuring::none), json_of(run(config, std::move(options))));
+  EXPECT_EQ(session.answer(settings, Measuring::none), json_of(run::run(config, std::move(options))));
 }
 
 TEST_F(Explored, SettingsComeBehindThoseOfTheCommand) {

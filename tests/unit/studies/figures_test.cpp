@@ -15,10 +15,16 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace run;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 TEST(Formulas, AreWrittenAsTheyAreComputed) {
   const Formula a("a");
@@ -134,13 +140,13 @@ struct Pair {
   }
 };
 
-Pair time_both(const processors::WorkLog& log, MachineConfig machine) {
+Pair time_both(const processors::program::WorkLog& log, MachineConfig machine) {
   Pair pair;
-  pair.all = processors::replay(log, machine);
+  pair.all = processors::replay::replay(log, machine);
   pair.all_counts = counts_of(machine, pair.all);
   machine.clusters = 1;
   machine.nodes = 1;
-  pair.one = processors::replay(log, machine);
+  pair.one = processors::replay::replay(log, machine);
   pair.one_counts = counts_of(machine, pair.one);
   return pair;
 }
@@ -148,10 +154,10 @@ Pair time_both(const processors::WorkLog& log, MachineConfig machine) {
 TEST(LostSpeedUp, AddsUpForEveryMachine) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     test::Random random(seed);
-    const processors::WorkLog log = test::random_tree_log(random, 9, 7);
+    const processors::program::WorkLog log = test::random_tree_log(random, 9, 7);
     MachineConfig machine = test::random_machine(random);
     // A bus that is not granted first come first served has no tree that is built and shared.
-    if (machine.placement == processors::Placement::shared &&
+    if (machine.placement == processors::machine::Placement::shared &&
         machine.interconnect.arbitration == memory::Arbitration::fifo && random() % 2 == 0) {
       machine.build = test::random_build(random);
     }
@@ -175,7 +181,7 @@ TEST(LostSpeedUp, AddsUpForEveryMachine) {
 
 TEST(LostSpeedUp, IsNoneOfOneNode) {
   test::Random random(3);
-  const processors::WorkLog log = test::random_log(random, 6, 6);
+  const processors::program::WorkLog log = test::random_log(random, 6, 6);
   MachineConfig machine = test::random_machine(random);
   machine.clusters = 1;
   machine.nodes = 1;
@@ -188,18 +194,18 @@ TEST(LostSpeedUp, IsNoneOfOneNode) {
 // A machine with only one cause of loss has only that part.
 TEST(LostSpeedUp, HasTheCauseItSays) {
   test::Random random(4);
-  const processors::WorkLog log = test::random_log(random, 16, 16);
+  const processors::program::WorkLog log = test::random_log(random, 16, 16);
   MachineConfig machine = test::random_machine(random);
   machine.clusters = 1;
   machine.nodes = 8;
-  machine.placement = processors::Placement::shared;
-  machine.cache.organisation = processors::CacheOrganisation::none;
+  machine.placement = processors::machine::Placement::shared;
+  machine.cache.organisation = processors::machine::CacheOrganisation::none;
   machine.interconnect.kind = memory::InterconnectKind::ideal;
   machine.interconnect.latency_cycles = 7;
   machine.operations = {1, 2, 3, 4, 1, 1, 1, 1};
   machine.write_buffer = 4096;
-  machine.host = {processors::Assignment::interleaved, sim::Clock::from_period(10), 0, 0};
-  machine.packets = {1, 1, processors::PacketOrder::scanline};
+  machine.host = {processors::machine::Assignment::interleaved, sim::Clock::from_period(10), 0, 0};
+  machine.packets = {1, 1, processors::machine::PacketOrder::scanline};
   Pair pair = time_both(log, machine);
   EXPECT_EQ(pair.lost("extra_misses"), 0) << "without caches nobody misses more";
   EXPECT_EQ(pair.lost("contention"), 0) << "nothing is shared";
@@ -212,13 +218,13 @@ TEST(LostSpeedUp, HasTheCauseItSays) {
   EXPECT_GT(time_both(log, machine).lost("contention"), 0);
 
   machine.interconnect.kind = memory::InterconnectKind::ideal;
-  machine.cache.organisation = processors::CacheOrganisation::unified;
+  machine.cache.organisation = processors::machine::CacheOrganisation::unified;
   machine.cache.cache = {.size = 1U << 20U, .line = 64, .ways = 0};
   pair = time_both(log, machine);
   EXPECT_GT(pair.lost("extra_misses"), 0) << "every cache is filled anew";
   EXPECT_EQ(pair.lost("contention"), 0);
 
-  machine.packets = {16, 16, processors::PacketOrder::scanline};
+  machine.packets = {16, 16, processors::machine::PacketOrder::scanline};
   pair = time_both(log, machine);
   EXPECT_EQ(pair.lost("idle"), pair.lost()) << "one packet, so seven nodes never have work";
   EXPECT_EQ(pair.lost(), 7 * pair.all.end);

@@ -13,6 +13,10 @@
 #include "scenes/procedural.h"
 
 namespace marti::studies {
+
+using namespace frames;
+using namespace keys;
+
 namespace {
 
 FrameConfig swing(std::uint32_t count, std::uint32_t first, double rate) {

@@ -22,9 +22,13 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {
+
+using namespace frames;
+using namespace paper;
+
 namespace {
 
-using processors::BranchStart;
+using processors::walk::BranchStart;
 
 /// A heap of tetrahedra; at every whole second the vertices that `moves` chooses are somewhere else.
 class Shaken : public scenes::PoseSource {
@@ -50,11 +54,11 @@ class Shaken : public scenes::PoseSource {
   std::function<bool(std::size_t)> moves_;
 };
 
-processors::MachineConfig machine_of(std::uint32_t nodes, processors::InitialTree initial,
-                                     std::uint32_t level = 1) {
-  processors::MachineConfig machine;
+processors::machine::MachineConfig machine_of(std::uint32_t nodes, processors::machine::InitialTree initial,
+                                              std::uint32_t level = 1) {
+  processors::machine::MachineConfig machine;
   machine.nodes = nodes;
-  machine.build.sharing = processors::Sharing::shared;
+  machine.build.sharing = processors::machine::Sharing::shared;
   machine.build.initial = initial;
   machine.build.level = level;
   machine.build.rule_k = 10.0;
@@ -63,7 +67,7 @@ processors::MachineConfig machine_of(std::uint32_t nodes, processors::InitialTre
 
 struct Timed {
   FrameTree tree;
-  std::shared_ptr<const processors::WorkLog> log;
+  std::shared_ptr<const processors::program::WorkLog> log;
   WayOutcomes ways;
 };
 
@@ -72,7 +76,7 @@ const WayOutcome& way(const Timed& frame, FrameWay which) {
 }
 
 std::vector<Timed> time_frames(std::shared_ptr<const scenes::PoseSource> source, std::uint32_t count,
-                               const processors::MachineConfig& machine) {
+                               const processors::machine::MachineConfig& machine) {
   const FrameSequence sequence(scenes::AnimatedScene(std::move(source)), {count, 0, 1.0});
   accel::OctreeOptions options;
   options.max_objects = 4;
@@ -84,12 +88,13 @@ std::vector<Timed> time_frames(std::shared_ptr<const scenes::PoseSource> source,
   sequence.visit([&](const PosedFrame& pose) {
     const FrameTree* before = frames.empty() ? nullptr : &frames.back().tree;
     Timed frame{make_frame_tree(before, pose.scene, options), nullptr, {}};
-    processors::RenderOptions render;
+    processors::program::RenderOptions render;
     render.width = 12;
     render.height = 8;
     render.max_depth = 2;
     render.record = true;
-    frame.log = processors::render(pose.scene, *frame.tree.triangles, *frame.tree.octree, render).log;
+    frame.log =
+        processors::program::render(pose.scene, *frame.tree.triangles, *frame.tree.octree, render).log;
     frame.ways = ways.time(*frame.log, frame.tree.update ? &*frame.tree.update : nullptr);
     frames.push_back(std::move(frame));
   });
@@ -117,7 +122,7 @@ std::int64_t branches_of(const accel::Topology& topology) {
 
 TEST(FrameWays, WhereNothingMovesNothingIsBuiltAgain) {
   const auto frames = time_frames(std::make_shared<Shaken>([](std::size_t) { return false; }), 3,
-                                  machine_of(3, processors::InitialTree::rule));
+                                  machine_of(3, processors::machine::InitialTree::rule));
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const TreeChange change = change_of(frames[i].tree);
     EXPECT_EQ(change.moved, 0U);
@@ -139,7 +144,7 @@ TEST(FrameWays, WhereNothingMovesNothingIsBuiltAgain) {
 
 TEST(FrameWays, WhereEverythingMovesNothingIsKept) {
   const auto frames = time_frames(std::make_shared<Shaken>([](std::size_t) { return true; }), 3,
-                                  machine_of(3, processors::InitialTree::level, 1));
+                                  machine_of(3, processors::machine::InitialTree::level, 1));
   for (const Timed& frame : frames) {
     EXPECT_EQ(way(frame, FrameWay::partial).all_splits(), branches_of(frame.tree.topology()));
     expect_equal(way(frame, FrameWay::partial), way(frame, FrameWay::rebuild_all));
@@ -150,7 +155,7 @@ TEST(FrameWays, WhereEverythingMovesNothingIsKept) {
 
 TEST(FrameWays, TheFirstFrameHasNothingToKeep) {
   const auto frames = time_frames(std::make_shared<Shaken>([](std::size_t) { return true; }), 1,
-                                  machine_of(2, processors::InitialTree::rule));
+                                  machine_of(2, processors::machine::InitialTree::rule));
   expect_equal(way(frames[0], FrameWay::partial), way(frames[0], FrameWay::rebuild_all));
   expect_equal(way(frames[0], FrameWay::partial_dynamic), way(frames[0], FrameWay::dynamic));
   const TreeChange change = change_of(frames[0].tree);
@@ -193,7 +198,7 @@ RC_GTEST_PROP(FrameWays, EveryBranchIsKeptOrSplitOrLeft, (std::uint64_t seed)) {
   const std::size_t vertices = scenes::make_procedural("teapot:2:pot").positions.size();
   const auto from = static_cast<std::size_t>(test::pick(random, 0, static_cast<std::int64_t>(vertices)));
   const std::size_t to = from + static_cast<std::size_t>(test::pick(random, 1, 20));
-  const auto initial = static_cast<processors::InitialTree>(test::pick(random, 0, 2));
+  const auto initial = static_cast<processors::machine::InitialTree>(test::pick(random, 0, 2));
   const auto level = static_cast<std::uint32_t>(test::pick(random, 1, 5));
   const auto frames = time_frames(
       std::make_shared<Shaken>([=](std::size_t v) { return v >= from && v < to; }, "teapot:2:pot"), 3,
@@ -219,7 +224,7 @@ RC_GTEST_PROP(FrameWays, EveryBranchIsKeptOrSplitOrLeft, (std::uint64_t seed)) {
       starts = carried_upwards(update, built);
       RC_ASSERT(carried_starts(update, built) == starts);
     } else {
-      starts = processors::branch_starts(topology, machine_of(1, initial, level).build);
+      starts = processors::walk::branch_starts(topology, machine_of(1, initial, level).build);
     }
     const NodeVisits visits = count_visits(*frame.log);
     built.assign(topology.nodes.size(), 0);
@@ -250,22 +255,22 @@ RC_GTEST_PROP(FrameWays, EveryBranchIsKeptOrSplitOrLeft, (std::uint64_t seed)) {
 TEST(FrameWays, OfPrivateTreesThatIsKeptWhichAllHave) {
   const scenes::Scene scene = scenes::make_procedural("teapot:2:pot");
   const FrameTree tree = make_frame_tree(nullptr, scene, {});
-  processors::RenderOptions render;
+  processors::program::RenderOptions render;
   render.width = 8;
   render.height = 8;
   render.record = true;
-  const auto log = processors::render(scene, *tree.triangles, *tree.octree, render).log;
+  const auto log = processors::program::render(scene, *tree.triangles, *tree.octree, render).log;
   const NodeVisits visits = count_visits(*log);
-  processors::MachineConfig machine = machine_of(1, processors::InitialTree::level, 2);
-  machine.build.sharing = processors::Sharing::private_trees;
+  processors::machine::MachineConfig machine = machine_of(1, processors::machine::InitialTree::level, 2);
+  machine.build.sharing = processors::machine::Sharing::private_trees;
   machine.packets.width = 8;
   machine.packets.height = 8;
-  processors::ReplayOptions options;
-  EXPECT_TRUE(processors::replay(*log, machine, options).build.built.empty()) << "nobody has asked";
+  processors::replay::ReplayOptions options;
+  EXPECT_TRUE(processors::replay::replay(*log, machine, options).build.built.empty()) << "nobody has asked";
   options.report_built = true;
-  const std::vector<std::uint8_t> alone = processors::replay(*log, machine, options).build.built;
+  const std::vector<std::uint8_t> alone = processors::replay::replay(*log, machine, options).build.built;
   machine.nodes = 4;
-  const std::vector<std::uint8_t> four = processors::replay(*log, machine, options).build.built;
+  const std::vector<std::uint8_t> four = processors::replay::replay(*log, machine, options).build.built;
   const auto& nodes = tree.topology().nodes;
   ASSERT_EQ(alone.size(), nodes.size());
   ASSERT_EQ(four.size(), nodes.size());

@@ -18,6 +18,12 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace frames;
+using namespace keys;
+using namespace run;
+using namespace tables;
+
 namespace {
 
 const std::string swing = "[scene]\nsource = \"" MARTI_SOURCE "/configs/scenes/swing.glb\"\n";
@@ -119,12 +125,14 @@ TEST(Frames, TreesAreSharedUnlessToldOtherwise) {
     sim::Config config = sim::Config::from_text(run_schema(), text, "frames.toml");
     return read_frames(config).machine.build;
   };
-  EXPECT_EQ(sharing("").sharing, processors::Sharing::shared);
+  EXPECT_EQ(sharing("").sharing, processors::machine::Sharing::shared);
   EXPECT_EQ(sharing("[build]\ninitial_level = \"3\"\n").level, 3U);
   EXPECT_EQ(sharing("[build]\nrule_k = 3.0\n").rule_k, 3.0);
-  EXPECT_EQ(sharing("[build]\nsharing = \"private\"\n").sharing, processors::Sharing::private_trees);
-  EXPECT_EQ(sharing("[database]\nplacement = \"replicated\"\n").sharing, processors::Sharing::private_trees);
-  EXPECT_EQ(sharing("[database]\nplacement = \"distributed\"\n").sharing, processors::Sharing::private_trees);
+  EXPECT_EQ(sharing("[build]\nsharing = \"private\"\n").sharing, processors::machine::Sharing::private_trees);
+  EXPECT_EQ(sharing("[database]\nplacement = \"replicated\"\n").sharing,
+            processors::machine::Sharing::private_trees);
+  EXPECT_EQ(sharing("[database]\nplacement = \"distributed\"\n").sharing,
+            processors::machine::Sharing::private_trees);
 }
 
 struct Wrong {

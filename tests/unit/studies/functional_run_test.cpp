@@ -15,6 +15,11 @@
 #include "studies/run/run_result.h"
 
 namespace marti::studies {
+
+using namespace helps;
+using namespace keys;
+using namespace run;
+
 namespace {
 
 FrameConfig teapot(const char* structure, std::uint64_t max_entries) {
@@ -78,7 +83,7 @@ TEST(Run, EveryShippedConfigurationCanBeRun) {
     if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
       ++configurations;
       sim::Config config = sim::Config::from_file(run_schema(), entry.path(), small);
-      const std::string summary = summary_of(run(config, {.what_helps = Measuring::within_budget}));
+      const std::string summary = summary_of(run::run(config, {.what_helps = Measuring::within_budget}));
       for (const char* line : {"frame time", "speed-up", "hit ratio", "what helps"}) {
         EXPECT_NE(summary.find(line), std::string::npos) << entry.path() << " lacks " << line;
       }

@@ -67,6 +67,10 @@ void operator delete[](void* memory, std::size_t /*bytes*/, std::align_val_t /*a
 }
 
 namespace marti::studies {
+
+using namespace helps;
+using namespace keys;
+
 namespace {
 
 // Changes by what they are, with their frame times.
@@ -90,8 +94,8 @@ void expect_no_wrong_figure(test::TimedCase (*make)(test::Random&), std::int64_t
   test::use_default_interleave(made.machine);
   const sim::Config config = test::configuration_of(test::assignments_of(made.machine));
   sim::Config read = config;
-  const processors::MachineConfig machine = read_machine(read);
-  const processors::MachineResult result = processors::replay(made.log, machine);
+  const processors::machine::MachineConfig machine = read_machine(read);
+  const processors::replay::MachineResult result = processors::replay::replay(made.log, machine);
   const SharedLog shared{made.log, nullptr, {}, {}};
   const auto measured = [&] { return what_helps(config, std::nullopt, machine, result, shared); };
   left = never;

@@ -19,10 +19,16 @@
 #include "tests/support/long_tests.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace helps;
+using namespace keys;
+using namespace run;
+
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 MachineConfig machine_of(const std::vector<std::string>& assignments) {
   sim::Config config = test::configuration_of(assignments);
@@ -38,17 +44,17 @@ std::vector<std::string> with(std::vector<std::string> assignments, const std::v
 
 // A configuration, its machine and frame, and what helps it.
 struct Case {
-  Case(const processors::WorkLog& work_log, std::vector<std::string> values,
+  Case(const processors::program::WorkLog& work_log, std::vector<std::string> values,
        std::optional<Prices> prices = std::nullopt)
       : log(work_log),
         assignments(std::move(values)),
         config(test::configuration_of(assignments)),
         machine(read_machine(config)),
-        result(processors::replay(log, machine)),
+        result(processors::replay::replay(log, machine)),
         what(what_helps(config, prices, machine, result, {log, nullptr, {}, {}})) {}
 
   [[nodiscard]] sim::Ticks end_with(const std::vector<KeyChange>& keys) const {
-    return processors::replay(log, machine_of(with(assignments, keys))).end;
+    return processors::replay::replay(log, machine_of(with(assignments, keys))).end;
   }
   [[nodiscard]] const Help* find(std::string_view name) const {
     const auto found = std::find_if(what.helps.begin(), what.helps.end(),
@@ -56,7 +62,7 @@ struct Case {
     return found == what.helps.end() ? nullptr : &*found;
   }
 
-  const processors::WorkLog& log;
+  const processors::program::WorkLog& log;
   std::vector<std::string> assignments;
   sim::Config config;
   MachineConfig machine;
@@ -136,7 +142,7 @@ TEST(WhatHelps, KeepsItsPromisesOnMachinesOfEveryKind) {
     const std::vector<std::string> assignments = test::assignments_of(made.machine);
     const Case one(made.log, assignments);
     // The configuration describes the random machine.
-    ASSERT_EQ(processors::replay(made.log, made.machine).end, one.result.end);
+    ASSERT_EQ(processors::replay::replay(made.log, made.machine).end, one.result.end);
     if (one.result.end > 0) {
       expect_followed(one);
       // As a run measures: with about as much work as the frame itself takes.
@@ -203,7 +209,7 @@ TEST(WhatHelps, ReplaysWhatIsBusiestWhereItCanReplayLittle) {
     const test::TimedCase made = makers[seed % makers.size()](random);
     sim::Config config = test::configuration_of(test::assignments_of(made.machine));
     const MachineConfig machine = read_machine(config);
-    const MachineResult result = processors::replay(made.log, machine);
+    const MachineResult result = processors::replay::replay(made.log, machine);
     const SharedLog shared{made.log, nullptr, {}, {}};
     const Work replay = replay_work(result, nullptr);
     const WhatHelps some = what_helps(config, std::nullopt, machine, result, shared, replay);
@@ -243,7 +249,7 @@ TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
 // One node that computes and waits for nothing: memory and host take no time.
 TEST(WhatHelps, AFasterNodeShortensAFrameOfComputingByItsClock) {
   test::Random random(1);
-  const processors::WorkLog log = test::random_log(random, 12, 12);
+  const processors::program::WorkLog log = test::random_log(random, 12, 12);
   const Case one(log, {"machine.nodes=1", "node.clock=100 MHz", "interconnect.kind=ideal",
                        "interconnect.latency_cycles=0", "host.assignment=blocks"});
   const Help* const clock = one.find("node.clock");
@@ -286,7 +292,7 @@ const std::vector<std::string> full_bus = {"machine.nodes=4",
 
 TEST(WhatHelps, TwiceTheWidthOfAFullBusHalvesTheFrame) {
   test::Random random(2);
-  const processors::WorkLog log = test::random_log(random, 12, 12);
+  const processors::program::WorkLog log = test::random_log(random, 12, 12);
   const Case one(log, full_bus);
   const Help* const width = one.find("interconnect.width");
   ASSERT_NE(width, nullptr);
@@ -301,7 +307,7 @@ TEST(WhatHelps, TwiceTheWidthOfAFullBusHalvesTheFrame) {
 // Bus and bank each take eight cycles for a line: whichever is made faster, the other is full.
 TEST(WhatHelps, TriesTwoStepsWhereNoneHelpsAlone) {
   test::Random random(3);
-  const processors::WorkLog log = test::random_log(random, 40, 40);
+  const processors::program::WorkLog log = test::random_log(random, 40, 40);
   std::vector<std::string> assignments = full_bus;
   assignments.insert(assignments.end(), {"machine.nodes=32", "memory.banks=1", "memory.busy_cycles=8"});
   const Case one(log, assignments);
@@ -323,7 +329,7 @@ TEST(WhatHelps, SaysWhatCostsNothing) {
                                                   "scene.source=teapot:2", assignment};
     sim::Config config = sim::Config::from_file(
         run_schema(), std::filesystem::path(MARTI_SOURCE) / "configs" / file, assignments);
-    const RunResult result = run(config, {.what_helps = Measuring::all, .prices = Prices()});
+    const RunResult result = run::run(config, {.what_helps = Measuring::all, .prices = Prices()});
     for (const Help& help : result.helps->helps) {
       if (!help.step) {
         continue;
@@ -351,7 +357,7 @@ TEST(WhatHelps, SaysWhatCostsNothing) {
 
 TEST(WhatHelps, ChoosesByPriceWherePricesAreGiven) {
   test::Random random(2);
-  const processors::WorkLog log = test::random_log(random, 12, 12);
+  const processors::program::WorkLog log = test::random_log(random, 12, 12);
   Prices prices;
   const Case free(log, full_bus);
   ASSERT_EQ(free.what.helps[0].name, "interconnect.width");
@@ -389,7 +395,7 @@ TEST(WhatHelps, ANearlyFullBusIsNotRelievedByMoreNodes) {
   for (const Measuring measuring : {Measuring::within_budget, Measuring::all}) {
     sim::Config config =
         sim::Config::from_file(run_schema(), fs::path(MARTI_SOURCE) / "configs" / "marti.toml", assignments);
-    const RunResult result = run(config, {.what_helps = measuring});
+    const RunResult result = run::run(config, {.what_helps = measuring});
     ASSERT_GT(result.figure("interconnect_utilisation").value_or(0.0), 0.9);
     ASSERT_TRUE(result.helps.has_value());
     EXPECT_TRUE(result.helps->sentence.starts_with("interconnect.width 4 B -> 8 B: frame "))
@@ -404,7 +410,7 @@ TEST(WhatHelps, ATreeThatIsBuiltBeforeTheFrameIsBetterBuiltOnDemand) {
                                                 "build.initial_level=full"};
   sim::Config config =
       sim::Config::from_file(run_schema(), fs::path(MARTI_SOURCE) / "configs" / "dynamic.toml", assignments);
-  const RunResult result = run(config, {.what_helps = Measuring::all});
+  const RunResult result = run::run(config, {.what_helps = Measuring::all});
   ASSERT_TRUE(result.helps.has_value());
   EXPECT_TRUE(result.helps->sentence.starts_with("build.initial_level full -> 1: frame "))
       << result.helps->sentence;

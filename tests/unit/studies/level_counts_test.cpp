@@ -18,11 +18,11 @@
 namespace marti::tests {
 namespace {
 
-using studies::bytes_of;
-using studies::count_lazy_levels;
-using studies::count_levels;
-using studies::LevelCount;
-using studies::rule_level;
+using studies::paper::bytes_of;
+using studies::paper::count_lazy_levels;
+using studies::paper::count_levels;
+using studies::paper::LevelCount;
+using studies::paper::rule_level;
 
 LevelCount level(std::uint64_t branches, std::uint64_t leaves, std::uint64_t partial = 0) {
   LevelCount count;
@@ -97,15 +97,15 @@ struct Rendered {
   scenes::Scene scene;
   std::shared_ptr<const accel::TriangleSet> triangles;
   std::unique_ptr<accel::Structure> structure;
-  processors::Frame frame;
+  processors::program::Frame frame;
 };
 
-Rendered render(std::string_view spec, const processors::RenderOptions& options) {
+Rendered render(std::string_view spec, const processors::program::RenderOptions& options) {
   Rendered result;
   result.scene = scenes::make_procedural(spec);
   result.triangles = std::make_shared<const accel::TriangleSet>(result.scene);
   result.structure = accel::make_structure("octree", result.triangles);
-  result.frame = processors::render(result.scene, *result.triangles, *result.structure, options);
+  result.frame = processors::program::render(result.scene, *result.triangles, *result.structure, options);
   return result;
 }
 
@@ -121,7 +121,7 @@ struct CountingVisitor {
 };
 
 TEST(Accesses, AreThoseOfAVisitorThatCounts) {
-  processors::RenderOptions options;
+  processors::program::RenderOptions options;
   options.width = 40;
   options.height = 30;
   options.max_depth = 1;
@@ -133,14 +133,14 @@ TEST(Accesses, AreThoseOfAVisitorThatCounts) {
   const scenes::ImagePlane plane = rendered.scene.camera.image_plane(options.width, options.height);
   for (std::uint32_t y = 0; y < options.height; ++y) {
     for (std::uint32_t x = 0; x < options.width; ++x) {
-      using Vec = processors::Vec3<double>;
-      const Vec direction =
-          normalized(Vec(plane.corner) + Vec(plane.step_x) * (x + 0.5) + Vec(plane.step_y) * (y + 0.5));
+      using Vec = processors::program::Vec3<double>;
+      const Vec direction = processors::program::normalized(
+          Vec(plane.corner) + Vec(plane.step_x) * (x + 0.5) + Vec(plane.step_y) * (y + 0.5));
       const accel::Ray ray{plane.origin, {direction.x, direction.y, direction.z}};
       static_cast<void>(octree.closest(ray, visitor));
     }
   }
-  const studies::NodeVisits visits = studies::count_visits(*rendered.frame.log);
+  const studies::paper::NodeVisits visits = studies::paper::count_visits(*rendered.frame.log);
   ASSERT_EQ(visits.per_level.size(), octree.levels().size());
   for (std::size_t i = 0; i < visits.per_level.size(); ++i) {
     EXPECT_EQ(visits.per_level[i], visitor.accesses[i]) << "level " << i + 1;
@@ -149,14 +149,14 @@ TEST(Accesses, AreThoseOfAVisitorThatCounts) {
 }
 
 TEST(Accesses, AddUpToTheLogsTotals) {
-  processors::RenderOptions options;
+  processors::program::RenderOptions options;
   options.width = 48;
   options.height = 48;
   options.max_depth = 3;
   options.record = true;
   const Rendered rendered = render("gears:1", options);
-  const studies::NodeVisits visits = studies::count_visits(*rendered.frame.log);
-  const processors::LogTotals totals = processors::totals_of(*rendered.frame.log);
+  const studies::paper::NodeVisits visits = studies::paper::count_visits(*rendered.frame.log);
+  const processors::program::LogTotals totals = processors::program::totals_of(*rendered.frame.log);
   std::uint64_t accesses = 0;
   std::uint64_t tests = 0;
   std::uint64_t distinct = 0;
@@ -191,14 +191,14 @@ TEST(Levels, AreTheStructuresOwnStatistics) {
 
 // Every level more that is built before the frame can only add nodes; what is touched is never missing.
 TEST(LazyLevels, GrowWithTheInitialLevel) {
-  processors::RenderOptions options;
+  processors::program::RenderOptions options;
   options.width = 32;
   options.height = 32;
   options.max_depth = 2;
   options.record = true;
   const Rendered rendered = render("teapot:6:pot", options);
   const accel::Topology& topology = rendered.frame.log->topology;
-  const studies::NodeVisits visits = studies::count_visits(*rendered.frame.log);
+  const studies::paper::NodeVisits visits = studies::paper::count_visits(*rendered.frame.log);
   std::uint64_t before = 0;
   for (std::uint32_t initial = 1; initial <= 13; ++initial) {
     const auto levels = count_lazy_levels(topology, visits.touched, initial);

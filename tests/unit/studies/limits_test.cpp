@@ -19,15 +19,22 @@
 #include "tests/support/timed_sweep.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace helps;
+using namespace keys;
+using namespace limits;
+using namespace sweep;
+
 namespace {
 
-using processors::MachineResult;
+using processors::replay::MachineResult;
 
 // With exponential service, whose half mean square is the square of the mean, it is mean value analysis.
 TEST(QueueModel, IsMeanValueAnalysisForExponentialService) {
   test::Random random(3);
   for (int i = 0; i < 50; ++i) {
-    processors::ClosedNetwork network;
+    processors::theory::ClosedNetwork network;
     network.customers = static_cast<std::uint64_t>(test::pick(random, 1, 60));
     network.think = static_cast<double>(test::pick(random, 1, 200));
     QueueModel model{network.think, {}};
@@ -37,7 +44,7 @@ TEST(QueueModel, IsMeanValueAnalysisForExponentialService) {
       model.stations.push_back({1.0, 1.0, demand, demand * demand});
       model.think += demand;
     }
-    const double exact = processors::mean_values(network).throughput;
+    const double exact = processors::theory::mean_values(network).throughput;
     EXPECT_NEAR(throughputs(model, network.customers).back() / exact, 1.0, 1e-9);
   }
 }
@@ -99,10 +106,10 @@ TEST(FrameModel, GivesTheFrameThatItWasFittedTo) {
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
     test::Random random(seed);
     const test::TimedCase made = test::image_case(random);
-    const MachineResult result = processors::replay(made.log, made.machine);
+    const MachineResult result = processors::replay::replay(made.log, made.machine);
     const std::optional<FrameModel> model =
         FrameModel::of(made.machine, point_figures(counts_of(made.machine, result)));
-    EXPECT_TRUE(!model || made.machine.placement == processors::Placement::shared);
+    EXPECT_TRUE(!model || made.machine.placement == processors::machine::Placement::shared);
     if (model) {
       ++described;
       const double end = model->end_of(made.machine, model->work_on(made.machine));
@@ -208,7 +215,7 @@ TEST(SweepLimits, SayNothingImpossibleOfMachinesOfEveryKind) {
     test::use_default_interleave(made.machine);
     const sim::Config config = test::configuration_of(test::assignments_of(made.machine));
     const PointFigures figures =
-        point_figures(counts_of(made.machine, processors::replay(made.log, made.machine)));
+        point_figures(counts_of(made.machine, processors::replay::replay(made.log, made.machine)));
     if (figures.end == 0.0) {
       continue;
     }

@@ -17,6 +17,9 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 using marti::test::Random;
@@ -25,8 +28,9 @@ std::vector<FrameLog> some_frames(std::size_t count) {
   Random random(count);
   std::vector<FrameLog> frames;
   for (std::size_t i = 0; i < count; ++i) {
-    processors::WorkLog log = marti::test::random_log(random, 10, static_cast<std::uint32_t>(10 + i));
-    frames.push_back({std::make_shared<const processors::WorkLog>(std::move(log)), {}});
+    processors::program::WorkLog log =
+        marti::test::random_log(random, 10, static_cast<std::uint32_t>(10 + i));
+    frames.push_back({std::make_shared<const processors::program::WorkLog>(std::move(log)), {}});
     frames.back().row.scene = std::to_string(i);
   }
   return frames;
@@ -34,7 +38,7 @@ std::vector<FrameLog> some_frames(std::size_t count) {
 
 // The cache is to be the only owner.
 FrameLog copy_of(const FrameLog& frame) {
-  return {std::make_shared<const processors::WorkLog>(*frame.log), frame.row};
+  return {std::make_shared<const processors::program::WorkLog>(*frame.log), frame.row};
 }
 LogCache::Trace tracing(const FrameLog& frame) {
   return [&frame] { return copy_of(frame); };

@@ -9,6 +9,9 @@
 #include "studies/estimate/simulator_methods.h"
 
 namespace marti::studies {
+
+using namespace estimate;
+
 namespace {
 
 TEST(MeasuredErrors, CoverEveryClassOfLoad) {

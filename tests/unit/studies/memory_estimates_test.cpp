@@ -17,10 +17,13 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
-using processors::CacheOrganisation;
-using processors::MachineConfig;
+using processors::machine::CacheOrganisation;
+using processors::machine::MachineConfig;
 
 struct Case {
   const char* name;
@@ -42,19 +45,20 @@ TEST(MemoryEstimates, OfMachinesAreNotTooLow) {
       {"replicated",
        [](MachineConfig& m) {
          m.cache.organisation = CacheOrganisation::none;
-         m.placement = processors::Placement::replicated;
+         m.placement = processors::machine::Placement::replicated;
        }},
   };
   test::Random random(3);
   // A packet for each node: the tags of a node without one take no memory.
-  const processors::WorkLog log = test::random_log(random, 256, 256, 4);
+  const processors::program::WorkLog log = test::random_log(random, 256, 256, 4);
   for (const Case& one : cases) {
     MachineConfig machine;
     machine.nodes = 256 * 256;
-    machine.packets = {1, 1, processors::PacketOrder::scanline};
+    machine.packets = {1, 1, processors::machine::PacketOrder::scanline};
     one.change(machine);
-    const auto peak = static_cast<double>(test::peak_bytes([&] { (void)replay(log, machine); }));
-    const auto estimate = static_cast<double>(processors::host_bytes(machine));
+    const auto peak =
+        static_cast<double>(test::peak_bytes([&] { (void)processors::replay::replay(log, machine); }));
+    const auto estimate = static_cast<double>(processors::replay::host_bytes(machine));
     EXPECT_GT(estimate, 0.9 * peak) << one.name << ": " << estimate / machine.nodes
                                     << " bytes a node, measured " << peak / machine.nodes;
     EXPECT_LT(estimate, 2.0 * peak) << one.name << ": " << estimate / machine.nodes

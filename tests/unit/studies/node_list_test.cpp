@@ -5,6 +5,9 @@
 #include "sim/error.h"
 
 namespace marti::studies {
+
+using namespace run;
+
 namespace {
 
 using Nodes = std::vector<std::uint32_t>;

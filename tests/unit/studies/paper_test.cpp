@@ -22,10 +22,10 @@
 namespace marti::tests {
 namespace {
 
-using studies::bytes_of;
-using studies::count_lazy_levels;
-using studies::StudyOutput;
-using studies::Table;
+using studies::paper::bytes_of;
+using studies::paper::count_lazy_levels;
+using studies::tables::StudyOutput;
+using studies::tables::Table;
 
 constexpr const char* small =
     "[image]\nwidth = 32\nheight = 24\n[machine]\nnodes = 2\n[structure]\nmax_objects = 9\n[paper]\n"
@@ -35,8 +35,8 @@ constexpr const char* small =
 StudyOutput run(const std::string& text, int threads = 2) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  sim::Config config = sim::Config::from_text(studies::paper_schema(), text, "paper.toml");
-  return studies::run_paper(config);
+  sim::Config config = sim::Config::from_text(studies::paper::paper_schema(), text, "paper.toml");
+  return studies::paper::run_paper(config);
 }
 
 const Table& table_of(const StudyOutput& output, std::string_view name) {
@@ -57,7 +57,8 @@ TEST(Paper, GivesTheSameBytesAtAnyNumberOfThreads) {
   const StudyOutput two = run(small, 2);
   ASSERT_EQ(one.tables.size(), two.tables.size());
   for (std::size_t i = 0; i < one.tables.size(); ++i) {
-    EXPECT_EQ(csv_of(one.tables[i]), csv_of(two.tables[i])) << one.tables[i].name();
+    EXPECT_EQ(studies::tables::csv_of(one.tables[i]), studies::tables::csv_of(two.tables[i]))
+        << one.tables[i].name();
     EXPECT_FALSE(one.tables[i].rows().empty()) << one.tables[i].name();
   }
   EXPECT_EQ(one.report, two.report);
@@ -92,24 +93,25 @@ TEST(Paper, SharesAddUpToOne) {
 // The tree that the host builds while rays are traced is the one that the log says they need.
 TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
   sim::Config config =
-      sim::Config::from_text(studies::paper_schema(), std::string(small) + "rules = [3.0]\n", "paper.toml",
-                             std::vector<std::string>{"paper.host_repetitions=1"});
-  const studies::PaperConfig paper = studies::read_paper(config);
-  for (const studies::PaperRun& run : paper.runs) {
-    const studies::TracedRun traced = studies::trace_run(paper, run);
-    const auto outcomes = studies::measure_host(paper, traced);
+      sim::Config::from_text(studies::paper::paper_schema(), std::string(small) + "rules = [3.0]\n",
+                             "paper.toml", std::vector<std::string>{"paper.host_repetitions=1"});
+  const studies::paper::PaperConfig paper = studies::paper::read_paper(config);
+  for (const studies::paper::PaperRun& run : paper.runs) {
+    const studies::paper::TracedRun traced = studies::paper::trace_run(paper, run);
+    const auto outcomes = studies::paper::measure_host(paper, traced);
     ASSERT_GE(outcomes.size(), 4U);
-    for (const studies::HostOutcome& outcome : outcomes) {
+    for (const studies::paper::HostOutcome& outcome : outcomes) {
       const auto levels =
           count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level);
       std::uint64_t nodes = 0;
       std::uint64_t partial = 0;
-      for (const studies::LevelCount& level : levels) {
+      for (const studies::paper::LevelCount& level : levels) {
         nodes += level.nodes();
         partial += level.partial;
       }
-      EXPECT_EQ(outcome.nodes, nodes) << name_of(run) << " level " << outcome.initial.level;
-      EXPECT_EQ(outcome.partial, partial) << name_of(run) << " level " << outcome.initial.level;
+      EXPECT_EQ(outcome.nodes, nodes) << studies::paper::name_of(run) << " level " << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, partial)
+          << studies::paper::name_of(run) << " level " << outcome.initial.level;
       EXPECT_GE(outcome.build_seconds, 0.0);
       EXPECT_GT(outcome.render_seconds, 0.0);
     }
@@ -121,22 +123,22 @@ TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
 // The simulated machine, node by node and line by line, leaves the tree that a count over the log predicts;
 // and building the whole tree before the frame takes the splits and the memory of all branches.
 TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
-  sim::Config config = sim::Config::from_text(studies::paper_schema(), small, "paper.toml");
-  const studies::PaperConfig paper = studies::read_paper(config);
-  std::vector<studies::TracedRun> traced;
-  for (const studies::PaperRun& run : paper.runs) {
-    traced.push_back(studies::trace_run(paper, run));
+  sim::Config config = sim::Config::from_text(studies::paper::paper_schema(), small, "paper.toml");
+  const studies::paper::PaperConfig paper = studies::paper::read_paper(config);
+  std::vector<studies::paper::TracedRun> traced;
+  for (const studies::paper::PaperRun& run : paper.runs) {
+    traced.push_back(studies::paper::trace_run(paper, run));
   }
-  const std::vector<studies::RunOutcomes> runs = time_initial_levels(paper, traced);
+  const std::vector<studies::paper::RunOutcomes> runs = studies::paper::time_initial_levels(paper, traced);
   ASSERT_EQ(runs.size(), traced.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (const studies::LevelOutcome& outcome : runs[i].levels) {
+    for (const studies::paper::LevelOutcome& outcome : runs[i].levels) {
       const auto levels =
           count_lazy_levels(traced[i].log->topology, traced[i].visits.touched, outcome.initial.level);
       std::uint64_t nodes = 0;
       std::uint64_t partial = 0;
       std::uint64_t branches = 0;
-      for (const studies::LevelCount& level : levels) {
+      for (const studies::paper::LevelCount& level : levels) {
         nodes += level.nodes();
         partial += level.partial;
         branches += level.branches;
@@ -145,7 +147,7 @@ TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
       EXPECT_EQ(outcome.partial, partial) << outcome.initial.level;
       EXPECT_EQ(outcome.splits, branches) << outcome.initial.level;
       EXPECT_EQ(outcome.bytes, bytes_of(levels, paper.machine.layout)) << outcome.initial.level;
-      EXPECT_EQ(processors::sum_of(outcome.time), paper.machine.all_nodes() * outcome.total());
+      EXPECT_EQ(processors::cost::sum_of(outcome.time), paper.machine.all_nodes() * outcome.total());
     }
     EXPECT_TRUE(runs[i].whole().initial.whole);
     EXPECT_EQ(runs[i].levels.front().build, 0) << "nothing is built beforehand at level 1";
@@ -154,25 +156,25 @@ TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
 }
 
 TEST(Tasks, TakeEveryTickOfANode) {
-  processors::TimeDivision time{};
+  processors::cost::TimeDivision time{};
   std::iota(time.begin(), time.end(), sim::Ticks{1});
-  const studies::TaskTimes sums = studies::tasks_of(time);
-  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}), processors::sum_of(time));
+  const studies::paper::TaskTimes sums = studies::paper::tasks_of(time);
+  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}), processors::cost::sum_of(time));
   for (const sim::Ticks sum : sums) {
     EXPECT_GT(sum, 0);
   }
 }
 
 TEST(Claims, SayWhatWasNotMeasured) {
-  for (const studies::Claim& claim : studies::check_tree_claims({})) {
-    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  for (const studies::tables::Claim& claim : studies::paper::check_tree_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject;
     EXPECT_EQ(claim.here, "");
   }
-  for (const studies::Claim& claim : studies::check_access_claims({})) {
-    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  for (const studies::tables::Claim& claim : studies::paper::check_access_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject;
   }
-  for (const studies::Claim& claim : studies::check_build_claims({})) {
-    EXPECT_EQ(claim.verdict, studies::Verdict::not_measured) << claim.subject;
+  for (const studies::tables::Claim& claim : studies::paper::check_build_claims({})) {
+    EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject;
   }
 }
 

@@ -8,12 +8,12 @@
 namespace marti::test {
 
 /// A machine that every method of estimating can answer for.
-inline processors::MachineConfig plain_machine(Random& random) {
-  processors::MachineConfig machine;
+inline processors::machine::MachineConfig plain_machine(Random& random) {
+  processors::machine::MachineConfig machine;
   machine.nodes = static_cast<std::uint32_t>(pick(random, 1, 9));
   machine.packets = {static_cast<std::uint32_t>(pick(random, 1, 4)),
                      static_cast<std::uint32_t>(pick(random, 1, 4)),
-                     static_cast<processors::PacketOrder>(pick(random, 0, 2))};
+                     static_cast<processors::machine::PacketOrder>(pick(random, 0, 2))};
   machine.cache.cache = {.size = 32ULL << pick(random, 0, 8), .line = 32, .ways = 1};
   return machine;
 }

@@ -20,6 +20,11 @@
 #include "tests/unit/studies/plan_scenes.h"
 
 namespace marti::studies {
+
+using namespace host;
+using namespace keys;
+using namespace run;
+
 namespace {
 
 using testing::Random;
@@ -33,7 +38,7 @@ void expect_same(const FunctionalRun& planned, const FunctionalRun& kept, const 
     ASSERT_EQ(planned.frame.hit_hash, kept.frame.hit_hash) << what;
     ASSERT_EQ(difference_of(*planned.frame.log, *kept.frame.log), "") << what;
   } else {
-    const processors::WorkLog without = without_shadows_at(unlit_materials(scene), *kept.frame.log);
+    const processors::program::WorkLog without = without_shadows_at(unlit_materials(scene), *kept.frame.log);
     ASSERT_EQ(difference_of(*planned.frame.log, without), "") << what;
   }
 }
@@ -81,14 +86,14 @@ scenes::Scene poisoned(const scenes::Scene& scene, const Plan& plan, const Scene
 // A log touches only what the plan keeps.
 void expect_sound(const FunctionalRun& kept, const SceneNeeds& needs, const scenes::Scene& scene,
                   const std::string& what) {
-  const processors::WorkLog& log = *kept.frame.log;
-  for (const processors::LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); at += processors::step_words(&row.words[at])) {
-      const std::uint32_t operand = processors::operand_of(row.words[at]);
-      const processors::Step step = processors::step_of(row.words[at]);
-      if (step == processors::Step::shade) {
+  const processors::program::WorkLog& log = *kept.frame.log;
+  for (const processors::program::LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size(); at += processors::program::step_words(&row.words[at])) {
+      const std::uint32_t operand = processors::program::operand_of(row.words[at]);
+      const processors::program::Step step = processors::program::step_of(row.words[at]);
+      if (step == processors::program::Step::shade) {
         ASSERT_TRUE(needs.materials[operand]) << what;
-      } else if (step == processors::Step::texel) {
+      } else if (step == processors::program::Step::texel) {
         ASSERT_TRUE(needs.coordinates) << what;
       }
     }
@@ -96,7 +101,8 @@ void expect_sound(const FunctionalRun& kept, const SceneNeeds& needs, const scen
   ASSERT_TRUE(needs.reflection_rays || kept.frame.rays.traced[2] == 0) << what;
   ASSERT_TRUE(needs.refraction_rays || kept.frame.rays.traced[3] == 0) << what;
   ASSERT_TRUE(needs.diffuse_rays || kept.frame.rays.traced[4] == 0) << what;
-  const bool any = std::any_of(scene.materials.begin(), scene.materials.end(), processors::asks_lights);
+  const bool any =
+      std::any_of(scene.materials.begin(), scene.materials.end(), processors::program::asks_lights);
   ASSERT_TRUE(any || kept.frame.rays.traced[1] == 0) << what;
 }
 
@@ -252,7 +258,7 @@ TEST(PlanProof, SeesWhatDiffers) {
   testing::add_wall(scene, -3.0, testing::add_material(scene));
   testing::add_light(scene, {0.0, 1.0, 0.0});
   const FunctionalRun run = run_planned(testing::small_frame(), scene);
-  processors::WorkLog other = *run.frame.log;
+  processors::program::WorkLog other = *run.frame.log;
   EXPECT_EQ(difference_of(*run.frame.log, other), "");
   other.rows[3].words.back() ^= 1U;
   EXPECT_EQ(difference_of(*run.frame.log, other), "the work logs differ in row 3");

@@ -16,8 +16,8 @@
 namespace marti::studies::testing {
 
 /// A frame of a scene that is given, small enough to be rendered a thousand times.
-inline FrameConfig small_frame(const std::string& structure = "octree", std::uint32_t side = 8) {
-  FrameConfig config;
+inline keys::FrameConfig small_frame(const std::string& structure = "octree", std::uint32_t side = 8) {
+  keys::FrameConfig config;
   config.structure = structure;
   config.structure_options.octree.max_objects = 2;
   config.structure_options.bsp.max_objects = 2;
@@ -110,10 +110,10 @@ inline void add_light(scenes::Scene& scene, const glm::dvec3& position,
 
 /// The triangle's own normal, in the operations of the ray tracer.
 inline glm::dvec3 own_normal(const scenes::Scene& scene, const scenes::Triangle& triangle) {
-  using Vec = processors::Vec3<double>;
+  using Vec = processors::program::Vec3<double>;
   const Vec a(scene.positions[triangle.vertex[0]]);
-  const Vec own = normalized(
-      cross(Vec(scene.positions[triangle.vertex[1]]) - a, Vec(scene.positions[triangle.vertex[2]]) - a));
+  const Vec own = processors::program::normalized(processors::program::cross(
+      Vec(scene.positions[triangle.vertex[1]]) - a, Vec(scene.positions[triangle.vertex[2]]) - a));
   return {own.x, own.y, own.z};
 }
 
@@ -220,15 +220,15 @@ inline scenes::Scene random_scene(Random& random) {
   return scene;
 }
 
-inline FrameConfig random_frame(Random& random, const std::string& structure) {
-  FrameConfig config = small_frame(structure);
+inline keys::FrameConfig random_frame(Random& random, const std::string& structure) {
+  keys::FrameConfig config = small_frame(structure);
   config.render.max_depth = 1 + random.below(4);
   config.render.shadows = random.chance(0.8);
   config.render.mailboxes = random.chance(0.3);
   config.render.min_weight = random.chance(0.3) ? 0.1 : 0.0;
   config.render.samples = random.chance(0.3) ? 1 + random.below(4) : 1;
   if (random.chance(0.3)) {
-    config.render.integrator = processors::Integrator::path;
+    config.render.integrator = processors::program::Integrator::path;
     config.render.min_weight = 0.0;
   }
   return config;

@@ -11,6 +11,10 @@
 #include "tests/unit/studies/plan_scenes.h"
 
 namespace marti::studies {
+
+using namespace keys;
+using namespace run;
+
 namespace {
 
 using testing::add_checker;
@@ -22,7 +26,7 @@ using testing::looking_ahead;
 using testing::Random;
 using testing::small_frame;
 
-Plan plan_of(const scenes::Scene& scene, const processors::RenderOptions& render,
+Plan plan_of(const scenes::Scene& scene, const processors::program::RenderOptions& render,
              const KeptItems& keep = {}) {
   return make_plan(facts_of_frame(scene, render, "octree", keep));
 }
@@ -33,7 +37,7 @@ PlanDecision decision(const scenes::Scene& scene, PlanItem item, const KeptItems
 }
 
 bool is_in_view(const scenes::Scene& scene, std::uint32_t primitive) {
-  const processors::RenderOptions render = small_frame().render;
+  const processors::program::RenderOptions render = small_frame().render;
   return View(scene.camera.image_plane(render.width, render.height), render.width, render.height,
               render.samples > 1)
       .may_meet(scene, primitive);
@@ -125,7 +129,7 @@ TEST(Plan, KeepsWhatAMirrorShows) {
   without.normals.clear();
   EXPECT_NE(run_functional(frame, std::as_const(without)).image_hash, whole);
   // One ray deep, the mirror shows nothing.
-  processors::RenderOptions shallow = frame.render;
+  processors::program::RenderOptions shallow = frame.render;
   shallow.max_depth = 1;
   Plan plan = plan_of(scene, shallow);
   EXPECT_EQ(find_entry(plan, PlanItem::textures)->decision, PlanDecision::left_out);
@@ -233,7 +237,7 @@ TEST(Plan, MoreOfASceneNeedsMore) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     Random random(seed);
     const scenes::Scene scene = testing::random_scene(random);
-    const processors::RenderOptions render = testing::random_frame(random, "octree").render;
+    const processors::program::RenderOptions render = testing::random_frame(random, "octree").render;
     const SceneNeeds before = needs_of(scene, render);
     scenes::Scene more = scene;
     add_light(more, {1.0, 2.0, 3.0});

@@ -16,6 +16,9 @@
 #include "studies/report/plots/vega_bundle.h"
 
 namespace marti::studies {
+
+using namespace report;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -14,6 +14,9 @@
 #include "studies/progress/shown_meter.h"
 
 namespace marti::studies {
+
+using namespace progress;
+
 namespace {
 
 using std::chrono::milliseconds;

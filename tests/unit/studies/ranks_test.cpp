@@ -9,6 +9,9 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 void forget_launchers() {

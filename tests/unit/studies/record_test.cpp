@@ -19,20 +19,24 @@
 #include "tests/support/temporary_directory.h"
 
 namespace marti::studies {
+
+using namespace run;
+using namespace tables;
+
 namespace {
 
-using processors::Activity;
-using processors::MachineConfig;
-using processors::MachineResult;
-using processors::NodeState;
+using processors::cost::Activity;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
+using processors::walk::NodeState;
 
-MachineResult watched(const processors::WorkLog& log, const MachineConfig& machine,
-                      processors::Observer& observer) {
+MachineResult watched(const processors::program::WorkLog& log, const MachineConfig& machine,
+                      processors::walk::Observer& observer) {
   Observers all;
   all.add(observer);
-  processors::ReplayOptions options;
+  processors::replay::ReplayOptions options;
   options.observer = &all;
-  return processors::replay(log, machine, options);
+  return processors::replay::replay(log, machine, options);
 }
 
 // "12.000345" microseconds are 12,000,345 ticks.
@@ -79,12 +83,12 @@ struct Machine {
     test::Random random(seed);
     log = test::random_tree_log(random, 12, 10);
     config = test::random_machine(random);
-    config.placement = processors::Placement::shared;
+    config.placement = processors::machine::Placement::shared;
     if (seed % 2 == 0) {
       config.build = test::random_build(random);
     }
   }
-  processors::WorkLog log;
+  processors::program::WorkLog log;
   MachineConfig config;
 };
 
@@ -102,8 +106,8 @@ TEST(Timelines, HoldTheWholeFrameNodeByNode) {
     EXPECT_FALSE(slices.note);
     for (std::size_t node = 0; node < result.nodes.size(); ++node) {
       const int track = static_cast<int>(node) + 1;
-      const processors::TimeDivision& time = result.nodes[node].time;
-      const bool own_memory = machine.config.build.sharing == processors::Sharing::private_trees;
+      const processors::cost::TimeDivision& time = result.nodes[node].time;
+      const bool own_memory = machine.config.build.sharing == processors::machine::Sharing::private_trees;
       for (const Activity activity :
            {Activity::interconnect_wait, Activity::transfer, Activity::bank_wait, Activity::bank_access,
             Activity::lock_wait, Activity::queue_full_wait, Activity::dispatch_wait, Activity::idle}) {
@@ -111,7 +115,7 @@ TEST(Timelines, HoldTheWholeFrameNodeByNode) {
           continue;
         }
         const auto index = static_cast<std::size_t>(activity);
-        const std::pair key(track, std::string(processors::activity_names[index]));
+        const std::pair key(track, std::string(processors::cost::activity_names[index]));
         EXPECT_EQ(slices.time[key], time[index])
             << "seed " << seed << ", node " << node << ", " << key.second;
       }
@@ -129,19 +133,19 @@ TEST(Timelines, HoldTheWholeFrameNodeByNode) {
 TEST(Timelines, ShowTheCriticalPathInATrackOfItsOwn) {
   const test::TemporaryDirectory directory;
   test::Random random(7);
-  const processors::WorkLog log = test::small_log(random);
+  const processors::program::WorkLog log = test::small_log(random);
   MachineConfig machine = test::random_machine(random);
   const std::filesystem::path file = directory.path() / "timeline.json";
   Timeline timeline(file, {});
-  processors::PathRecorder path({}, processors::PathPieces::no_fold);
+  processors::path::PathRecorder path({}, processors::path::PathPieces::no_fold);
   timeline.mark(&path);
   Observers all;
   all.add(path);
   all.add(timeline);
-  processors::ReplayOptions options;
+  processors::replay::ReplayOptions options;
   options.observer = &all;
   options.path = &path;
-  const MachineResult result = processors::replay(log, machine, options);
+  const MachineResult result = processors::replay::replay(log, machine, options);
   timeline.commit();
   Slices slices = read_timeline(file);
   EXPECT_EQ(slices.events, timeline.events());
@@ -163,15 +167,15 @@ TEST(Timelines, CutNodesAndCriticalPathEachForItself) {
   const int path_track = static_cast<int>(machine.config.all_nodes()) + 1;
   const auto record = [&](std::int64_t limit) {
     auto timeline = std::make_unique<Timeline>(file, TimelineOptions{.most_events = limit});
-    processors::PathRecorder path({}, processors::PathPieces::no_fold);
+    processors::path::PathRecorder path({}, processors::path::PathPieces::no_fold);
     timeline->mark(&path);
     Observers all;
     all.add(path);
     all.add(*timeline);
-    processors::ReplayOptions options;
+    processors::replay::ReplayOptions options;
     options.observer = &all;
     options.path = &path;
-    (void)processors::replay(machine.log, machine.config, options);
+    (void)processors::replay::replay(machine.log, machine.config, options);
     timeline->commit();
     return timeline;
   };
@@ -202,7 +206,7 @@ TEST(Timelines, CutNodesAndCriticalPathEachForItself) {
 TEST(Timelines, KeepToTheirWindow) {
   const test::TemporaryDirectory directory;
   const Machine machine(7);
-  const sim::Ticks end = processors::replay(machine.log, machine.config).end;
+  const sim::Ticks end = processors::replay::replay(machine.log, machine.config).end;
   const std::filesystem::path file = directory.path() / "timeline.json";
   Timeline timeline(file, {.from = end / 3, .to = end / 2});
   const MachineResult result = watched(machine.log, machine.config, timeline);
@@ -256,10 +260,10 @@ TEST(HeatMaps, AddUpToTheMachinesAccounts) {
       }
       return total;
     };
-    const processors::TimeDivision time = result.time();
+    const processors::cost::TimeDivision time = result.time();
     const auto part = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
     EXPECT_EQ(sum(Heat::cycles),
-              processors::sum_of(time) - part(Activity::dispatch_wait) - part(Activity::idle));
+              processors::cost::sum_of(time) - part(Activity::dispatch_wait) - part(Activity::idle));
     EXPECT_EQ(sum(Heat::misses), result.references().all_misses());
     EXPECT_EQ(sum(Heat::waits), part(Activity::interconnect_wait) + part(Activity::transfer) +
                                     part(Activity::bank_wait) + part(Activity::bank_access) +
@@ -317,12 +321,12 @@ TEST(HeatMaps, ColoursGetLighterAllTheWay) {
 }
 
 /// Ignores idling.
-class Forgetful final : public processors::Observer {
+class Forgetful final : public processors::walk::Observer {
  public:
-  explicit Forgetful(processors::Observer& next) : next_(next) {}
-  void begin(const processors::ReplayInput& input) override { next_.begin(input); }
+  explicit Forgetful(processors::walk::Observer& next) : next_(next) {}
+  void begin(const processors::walk::ReplayInput& input) override { next_.begin(input); }
   void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to,
-             processors::PixelPlace pixel) override {
+             processors::walk::PixelPlace pixel) override {
     if (state != NodeState::idle) {
       next_.spent(node, state, from, to, pixel);
     }
@@ -330,18 +334,19 @@ class Forgetful final : public processors::Observer {
   void end(sim::Ticks time) override { next_.end(time); }
 
  private:
-  processors::Observer& next_;
+  processors::walk::Observer& next_;
 };
 
 TEST(Observing, ATimeLineThatEndsTooEarlyIsAFault) {
   const Machine machine(1);
-  ASSERT_GT(processors::replay(machine.log, machine.config).time()[static_cast<std::size_t>(Activity::idle)],
+  ASSERT_GT(processors::replay::replay(machine.log, machine.config)
+                .time()[static_cast<std::size_t>(Activity::idle)],
             0);
   Observers all;
   Forgetful forgetful(all);
-  processors::ReplayOptions options;
+  processors::replay::ReplayOptions options;
   options.observer = &forgetful;
-  EXPECT_THROW((void)processors::replay(machine.log, machine.config, options), sim::InternalError);
+  EXPECT_THROW((void)processors::replay::replay(machine.log, machine.config, options), sim::InternalError);
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 #include <vector>
 
 namespace marti::studies {
+
+using namespace estimate;
+
 namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }

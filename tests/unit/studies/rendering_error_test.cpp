@@ -18,6 +18,11 @@
 #include "studies/tables/text_table.h"
 
 namespace marti::studies {
+
+using namespace error;
+using namespace keys;
+using namespace tables;
+
 namespace {
 
 FrameConfig small_frame(const std::string& scene) {
@@ -207,12 +212,13 @@ TEST(RenderingError, ADepthCutLosesTheRestOfAGeometricSeries) {
     const scenes::Scene scene = mirror_room(r);
     const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
     const auto structure = accel::make_structure("octree", triangles);
-    processors::RenderOptions options{.width = 8, .height = 8, .max_depth = 60};
-    const processors::Image deep = processors::render(scene, *triangles, *structure, options).image;
+    processors::program::RenderOptions options{.width = 8, .height = 8, .max_depth = 60};
+    const processors::program::Image deep =
+        processors::program::render(scene, *triangles, *structure, options).image;
     for (const std::uint32_t depth : {1U, 2U, 5U, 12U}) {
       options.max_depth = depth;
       const RenderingErrors errors =
-          rendering_errors(processors::render(scene, *triangles, *structure, options).image, deep);
+          rendering_errors(processors::program::render(scene, *triangles, *structure, options).image, deep);
       // Light of emission 1 after d, d + 1, ... reflections: r^d / (1 - r) with r <= 1.
       const double bound = std::pow(r, depth) / (1.0 - r);
       EXPECT_LE(errors.plain.largest, bound * (1.0 + 1e-5) + 1e-6) << r << " " << depth;

@@ -10,9 +10,12 @@
 #include "studies/error/rendering_metrics.h"
 
 namespace marti::studies {
+
+using namespace error;
+
 namespace {
 
-using processors::Image;
+using processors::program::Image;
 
 Image random_image(std::mt19937_64& random, std::uint32_t width, std::uint32_t height) {
   std::uniform_real_distribution<float> value(0.0F, 2.0F);

@@ -10,6 +10,10 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace report;
+using namespace tables;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

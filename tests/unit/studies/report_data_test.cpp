@@ -30,6 +30,10 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace report;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -10,6 +10,9 @@
 #include "studies/report/model/sweep_model.h"
 
 namespace marti::studies {
+
+using namespace report;
+
 namespace {
 
 // A bus machine of `nodes` nodes with 1000 reads: 100 ps of computing and 10 ps of the bus each.
@@ -33,7 +36,7 @@ TEST(ClosedNetworkEnd, OneNodeMeetsNobody) {
 // One queue with exponential times is the machine repairman, whose utilisation is known by Erlang's formula.
 TEST(ClosedNetworkEnd, IsTheMachineRepairman) {
   for (const unsigned nodes : {2U, 5U, 11U, 40U}) {
-    const double busy = processors::repairman_utilisation(nodes, 100.0, 10.0);
+    const double busy = processors::theory::repairman_utilisation(nodes, 100.0, 10.0);
     EXPECT_NEAR(closed_network_end(bus_machine(nodes, 1)), 10'000.0 / busy, 1e-6 * 10'000.0) << nodes;
   }
 }

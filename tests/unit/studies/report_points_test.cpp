@@ -9,6 +9,12 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace report;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;

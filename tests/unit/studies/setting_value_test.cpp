@@ -16,6 +16,12 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace keys;
+using namespace show;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -23,13 +23,16 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {
+
+using namespace estimate;
+
 namespace {
 
-using processors::Frame;
-using processors::MachineConfig;
-using processors::PacketList;
-using processors::PixelSet;
-using processors::WorkLog;
+using processors::machine::MachineConfig;
+using processors::machine::PacketList;
+using processors::program::Frame;
+using processors::program::PixelSet;
+using processors::program::WorkLog;
 
 RC_GTEST_PROP(Strata, CoverAllUnitsAndDrawTwoOfEach, (std::uint64_t seed)) {
   test::Random random(seed);
@@ -86,7 +89,7 @@ TEST(Strata, DrawEachUnitEquallyOften) {
 Frame part_of(const WorkLog& log, const PixelSet& only, const Frame* before) {
   auto part = std::make_shared<WorkLog>(log);
   for (std::uint32_t y = 0; y < log.height; ++y) {
-    processors::LogRow& row = part->rows[y];
+    processors::program::LogRow& row = part->rows[y];
     row = {};
     for (std::uint32_t x = 0; x < log.width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
@@ -151,7 +154,7 @@ RC_GTEST_PROP(Lattice, ExpectsTheTimeOfThePixelNextToEach, (std::uint64_t seed))
   std::vector<double> of_image(std::size_t{log.width} * log.height);
   std::vector<double> times;
   double words_of_lattice = 0.0;
-  for (const processors::PixelPlace& pixel : lattice.pixels()) {
+  for (const processors::walk::PixelPlace& pixel : lattice.pixels()) {
     RC_ASSERT(set.has(pixel.x, pixel.y));
     columns[pixel.x] = true;
     rows[pixel.y] = true;
@@ -165,7 +168,7 @@ RC_GTEST_PROP(Lattice, ExpectsTheTimeOfThePixelNextToEach, (std::uint64_t seed))
   const PacketList packets(log.width, log.height, {1, 1});
   const std::vector<double> expected = lattice.expected_of_packets(times, packets);
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
-    const processors::Packet at = packets[packet];
+    const processors::machine::Packet at = packets[packet];
     // A cell's first column, and row, is as far from the pixel of the cell before.
     if (at.x0 % 8 != 0 && at.y0 % 8 != 0) {
       const std::size_t next = std::size_t{nearest(at.y0, rows)} * log.width + nearest(at.x0, columns);
@@ -200,7 +203,7 @@ TEST(Lattice, ItsIntervalCoversTheMeanOfTheImage) {
     }
     std::vector<double> times;
     double of_lattice = 0.0;
-    for (const processors::PixelPlace& pixel : lattice.pixels()) {
+    for (const processors::walk::PixelPlace& pixel : lattice.pixels()) {
       times.push_back(static_cast<double>(image[pixel.y * side + pixel.x]));
       of_lattice += times.back();
     }
@@ -219,7 +222,7 @@ WorkLog doubled(const WorkLog& log) {
   WorkLog twice = log;
   twice.width = 2 * log.width;
   for (std::uint32_t y = 0; y < log.height; ++y) {
-    processors::LogRow& row = twice.rows[y];
+    processors::program::LogRow& row = twice.rows[y];
     row = {};
     for (std::uint32_t x = 0; x < twice.width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
@@ -236,21 +239,22 @@ WorkLog doubled(const WorkLog& log) {
 RC_GTEST_PROP(PixelFigures, AreThoseOfPacketsOfOnePixel, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 14, 11);
-  MachineConfig machine = processors::one_node_of(test::plain_machine(random));
-  machine.packets = {1, 1, processors::PacketOrder::scanline};
+  MachineConfig machine = processors::machine::one_node_of(test::plain_machine(random));
+  machine.packets = {1, 1, processors::machine::PacketOrder::scanline};
   const WorkLog twice = doubled(log);
   std::vector<std::uint64_t> all(PacketList(twice.width, twice.height, machine.packets).size());
   std::iota(all.begin(), all.end(), std::uint64_t{0});
-  const processors::PacketSample sample(all, all.size(), 0);
-  const std::vector<processors::PacketFigures> packets =
-      processors::replay(twice, machine, {.sample = &sample}).packet_figures;
-  std::vector<processors::PixelPlace> pixels;
+  const processors::walk::PacketSample sample(all, all.size(), 0);
+  const std::vector<processors::walk::PacketFigures> packets =
+      processors::replay::replay(twice, machine, {.sample = &sample}).packet_figures;
+  std::vector<processors::walk::PixelPlace> pixels;
   for (std::uint32_t y = 0; y < log.height; ++y) {
     for (std::uint32_t x = 0; x < log.width; ++x) {
       pixels.push_back({x, y});
     }
   }
-  const std::vector<processors::PixelFigures> figures = processors::pixel_figures(log, machine, pixels);
+  const std::vector<processors::passes::PixelFigures> figures =
+      processors::passes::pixel_figures(log, machine, pixels);
   const sim::Ticks hit = machine.clock.cycles(machine.cache.hit_cycles);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     RC_ASSERT(figures[i].misses == packets[2 * i].misses);
@@ -263,10 +267,10 @@ RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 12, 10);
   const MachineConfig machine = test::plain_machine(random);
-  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
+  const MachineFigures exact = figures_of(machine, processors::replay::replay(log, machine));
   const PacketList packets(log.width, log.height, machine.packets);
-  const MachineConfig one = processors::one_node_of(machine);
-  const double alone = figures_of(one, processors::replay(log, one))[Figure::end];
+  const MachineConfig one = processors::machine::one_node_of(machine);
+  const double alone = figures_of(one, processors::replay::replay(log, one))[Figure::end];
   for (const std::uint64_t length : {packets.size(), (packets.size() + 1) / 2}) {
     const PacketWindows windows(packets, length, 1, seed);
     const SampledRun run = estimate_by_sample(log, machine, windows, PixelLattice(log.width, log.height));
@@ -326,9 +330,9 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
   test::Random random(5);
   const WorkLog log = test::random_log(random, 64, 64, 20);
   MachineConfig machine = test::plain_machine(random);
-  machine.packets = {2, 2, processors::PacketOrder::scanline};
+  machine.packets = {2, 2, processors::machine::PacketOrder::scanline};
   machine.nodes = 1;
-  const MachineFigures exact = figures_of(machine, processors::replay(log, machine));
+  const MachineFigures exact = figures_of(machine, processors::replay::replay(log, machine));
   const PacketList packets(log.width, log.height, machine.packets);
   for (const std::uint64_t strata : {8, 16}) {
     int times = 0;
@@ -363,11 +367,11 @@ TEST(Sample, MachinesThatCannotBeSampledAreRefused) {
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
     }
   };
-  refused([](MachineConfig& m) { m.scheme = processors::Scheme::space; }, "scheme");
+  refused([](MachineConfig& m) { m.scheme = processors::machine::Scheme::space; }, "scheme");
   refused([](MachineConfig& m) { m.contexts = 2; }, "context");
-  refused([](MachineConfig& m) { m.build.sharing = processors::Sharing::shared; }, "build.sharing");
+  refused([](MachineConfig& m) { m.build.sharing = processors::machine::Sharing::shared; }, "build.sharing");
   refused([](MachineConfig& m) { m.clusters = 2; }, "cluster");
-  refused([](MachineConfig& m) { m.placement = processors::Placement::replicated; }, "placement");
+  refused([](MachineConfig& m) { m.placement = processors::machine::Placement::replicated; }, "placement");
 }
 
 }  // namespace

@@ -18,9 +18,9 @@
 namespace marti::tests {
 namespace {
 
-using studies::Cell;
-using studies::ColumnType;
-using studies::Table;
+using studies::tables::Cell;
+using studies::tables::ColumnType;
+using studies::tables::Table;
 using test::TemporaryDirectory;
 
 Cell cell_of(sqlite3_stmt* statement, int column) {
@@ -65,16 +65,17 @@ std::string bytes_of(const std::filesystem::path& file) {
 std::vector<Table> hostile_tables() {
   std::vector<Table> tables;
   // Names that are words of SQL.
-  Table& table = tables.emplace_back("table", "",
-                                     std::vector<studies::Column>{{"select", ColumnType::integer, "1", ""},
-                                                                  {"order", ColumnType::real, "", ""},
-                                                                  {"where", ColumnType::text, "", ""}});
+  Table& table =
+      tables.emplace_back("table", "",
+                          std::vector<studies::tables::Column>{{"select", ColumnType::integer, "1", ""},
+                                                               {"order", ColumnType::real, "", ""},
+                                                               {"where", ColumnType::text, "", ""}});
   table.add_row({std::numeric_limits<std::int64_t>::min(), -0.1, "'; DROP TABLE x; --"});
   table.add_row({std::numeric_limits<std::int64_t>::max(), std::numeric_limits<double>::infinity(),
                  std::string("a\0\"b\n", 5)});
   table.add_row({Cell(), Cell(), Cell()});
   table.add_row({std::int64_t{0}, 1.0, ""});
-  tables.emplace_back("empty", "", std::vector<studies::Column>{{"a", ColumnType::text, "", ""}});
+  tables.emplace_back("empty", "", std::vector<studies::tables::Column>{{"a", ColumnType::text, "", ""}});
   return tables;
 }
 
@@ -82,7 +83,7 @@ TEST(Sqlite, HostileCellsComeBack) {
   const TemporaryDirectory directory;
   const std::filesystem::path file = directory.path() / "results.sqlite";
   const std::vector<Table> tables = hostile_tables();
-  write_database(file, tables);
+  studies::tables::write_database(file, tables);
   const auto rows = read(file, "SELECT * FROM \"table\" ORDER BY rowid");
   ASSERT_EQ(rows.size(), tables[0].rows().size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -96,24 +97,25 @@ TEST(Sqlite, NotANumberBecomesNull) {
   const TemporaryDirectory directory;
   Table table("t", "", {{"r", ColumnType::real, "", ""}});
   table.add_row({std::numeric_limits<double>::quiet_NaN()});
-  write_database(directory.path() / "a", std::vector{table});
+  studies::tables::write_database(directory.path() / "a", std::vector{table});
   EXPECT_EQ(read(directory.path() / "a", "SELECT r IS NULL FROM t").at(0).at(0), Cell(std::int64_t{1}));
 }
 
 TEST(Sqlite, EqualTablesGiveEqualFiles) {
   const TemporaryDirectory directory;
-  write_database(directory.path() / "a", hostile_tables());
-  write_database(directory.path() / "b", hostile_tables());
+  studies::tables::write_database(directory.path() / "a", hostile_tables());
+  studies::tables::write_database(directory.path() / "b", hostile_tables());
   EXPECT_FALSE(bytes_of(directory.path() / "a").empty());
   EXPECT_EQ(bytes_of(directory.path() / "a"), bytes_of(directory.path() / "b"));
 }
 
 TEST(Sqlite, AFileThatCannotBeWrittenIsTheUsersMatter) {
   const TemporaryDirectory directory;
-  EXPECT_THROW(write_database(directory.path() / "missing" / "a", hostile_tables()), sim::UserError);
-  EXPECT_THROW(write_database(directory.path(), hostile_tables()), sim::UserError);
+  EXPECT_THROW(studies::tables::write_database(directory.path() / "missing" / "a", hostile_tables()),
+               sim::UserError);
+  EXPECT_THROW(studies::tables::write_database(directory.path(), hostile_tables()), sim::UserError);
   try {
-    write_database("/dev/full", hostile_tables());
+    studies::tables::write_database("/dev/full", hostile_tables());
     FAIL() << "a full disk was not noticed";
   } catch (const sim::UserError& error) {
     EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
@@ -124,7 +126,7 @@ TEST(Sqlite, ATableTwiceIsRefused) {
   const TemporaryDirectory directory;
   std::vector<Table> tables = hostile_tables();
   tables.push_back(tables[0]);
-  EXPECT_THROW(write_database(directory.path() / "a", tables), sim::UserError);
+  EXPECT_THROW(studies::tables::write_database(directory.path() / "a", tables), sim::UserError);
 }
 
 }  // namespace

@@ -21,9 +21,16 @@
 #include "studies/stability/stability_keys.h"
 #include "tests/support/long_tests.h"
 
-namespace marti::studies {
+namespace marti::studies::stability {
 
 void PrintTo(const StabilityCase& one, std::ostream* out) { *out << one.id << ": " << one.risk; }
+
+}  // namespace marti::studies::stability
+
+namespace marti::studies {
+
+using namespace stability;
+using namespace tables;
 
 namespace {
 
@@ -156,11 +163,11 @@ TEST(StabilityOracles, AStructureThatIsNotBruteForceIsFound) {
 }
 
 TEST(StabilityOracles, OneTickTooManyIsFound) {
-  const processors::MachineConfig machine = machines_of_every_kind().front().machine;
-  const processors::MachineResult base = processors::replay(small_log(), machine);
+  const processors::machine::MachineConfig machine = machines_of_every_kind().front().machine;
+  const processors::replay::MachineResult base = processors::replay::replay(small_log(), machine);
   EXPECT_TRUE(is_stretched(base, base, 1));
   EXPECT_FALSE(is_stretched(base, base, 2));
-  processors::MachineResult other = base;
+  processors::replay::MachineResult other = base;
   other.nodes[3].time[0] += 1;
   EXPECT_FALSE(is_stretched(base, other, 1));
   other = base;

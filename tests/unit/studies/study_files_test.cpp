@@ -16,9 +16,9 @@ namespace marti::tests {
 namespace {
 
 namespace fs = std::filesystem;
-using studies::ColumnType;
-using studies::StudyOutput;
-using studies::Table;
+using studies::tables::ColumnType;
+using studies::tables::StudyOutput;
+using studies::tables::Table;
 using test::TemporaryDirectory;
 
 StudyOutput make_output(std::int64_t value) {
@@ -48,14 +48,14 @@ std::set<std::string> names_in(const fs::path& directory) {
 TEST(StudyFiles, AreWhatTheHeaderSays) {
   const TemporaryDirectory directory;
   StudyOutput output = make_output(7);
-  EXPECT_EQ(write_study(output, directory.path()).size(), 4U);
+  EXPECT_EQ(studies::tables::write_study(output, directory.path()).size(), 4U);
   EXPECT_EQ(names_in(directory.path()),
             (std::set<std::string>{"numbers.csv", "columns.csv", "report.txt", "results.sqlite"}));
   EXPECT_EQ(read(directory.path() / "numbers.csv"), "n\r\n7\r\n");
   output.host_report = "seconds\n";
-  output.host_tables.emplace_back("host_numbers", "",
-                                  std::vector<studies::Column>{{"s", ColumnType::real, "s", "seconds"}});
-  write_study(output, directory.path());
+  output.host_tables.emplace_back(
+      "host_numbers", "", std::vector<studies::tables::Column>{{"s", ColumnType::real, "s", "seconds"}});
+  studies::tables::write_study(output, directory.path());
   EXPECT_EQ(names_in(directory.path()),
             (std::set<std::string>{"numbers.csv", "host_numbers.csv", "columns.csv", "report.txt", "host.txt",
                                    "results.sqlite"}));
@@ -63,18 +63,18 @@ TEST(StudyFiles, AreWhatTheHeaderSays) {
 
 TEST(StudyFiles, AFailureLeavesTheOldOnes) {
   const TemporaryDirectory directory;
-  write_study(make_output(1), directory.path());
+  studies::tables::write_study(make_output(1), directory.path());
   const auto names = names_in(directory.path());
   const std::string database = read(directory.path() / "results.sqlite");
   // Two tables of one name cannot both be written.
   StudyOutput twice = make_output(2);
   twice.tables.push_back(twice.tables[0]);
-  EXPECT_THROW(write_study(twice, directory.path()), sim::UserError);
+  EXPECT_THROW(studies::tables::write_study(twice, directory.path()), sim::UserError);
   EXPECT_EQ(names_in(directory.path()), names);
   EXPECT_EQ(read(directory.path() / "numbers.csv"), "n\r\n1\r\n");
   EXPECT_EQ(read(directory.path() / "report.txt"), "report 1\n");
   EXPECT_EQ(read(directory.path() / "results.sqlite"), database);
-  EXPECT_THROW(write_study(make_output(3), directory.path() / "missing"), sim::UserError);
+  EXPECT_THROW(studies::tables::write_study(make_output(3), directory.path() / "missing"), sim::UserError);
 }
 
 }  // namespace

@@ -8,6 +8,9 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 using test::user_error_of;

@@ -8,6 +8,9 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 SweepMessage made_message(std::uint64_t seed, const std::string& bytes) {

@@ -12,6 +12,11 @@
 #include "studies/sweep/sweep_outlook.h"
 
 namespace marti::studies {
+
+using namespace keys;
+using namespace run;
+using namespace sweep;
+
 namespace {
 
 SweepPlan planned(const std::string& text) {

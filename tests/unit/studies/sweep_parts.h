@@ -23,18 +23,18 @@ inline std::string made_key(std::uint64_t number) {
 
 /// Machines on two frames, with as many settings as real ones have; the point of every machine but the first
 /// is measured against the first.
-inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0) {
-  studies::SweepPlan plan;
-  studies::SettingsPool pool;
+inline studies::sweep::SweepPlan made_plan(std::size_t machines, std::size_t first = 0) {
+  studies::sweep::SweepPlan plan;
+  studies::sweep::SettingsPool pool;
   plan.axes = {"point", "machine.nodes", "cache.size", "bus.\"odd\"", "l2.on"};
   for (std::size_t frame = 0; frame < 2; ++frame) {
-    studies::SweepFrame& made = plan.frames.emplace_back();
+    studies::sweep::SweepFrame& made = plan.frames.emplace_back();
     made.key = made_key(1000000 + frame);
     made.settings = {{"scene.source", "\"teapot:" + std::to_string(frame) + "\"", true, ""},
                      {"image.width", "512", false, ""}};
   }
   for (std::size_t i = first; i < first + machines; ++i) {
-    studies::SweepMachine& made = plan.machines.emplace_back();
+    studies::sweep::SweepMachine& made = plan.machines.emplace_back();
     made.key = made_key(i);
     made.frame = i % 2;
     std::vector<sim::EffectiveValue> settings;
@@ -61,16 +61,16 @@ inline studies::SweepPlan made_plan(std::size_t machines, std::size_t first = 0)
 using Random = std::mt19937_64;
 
 /// Any row that a machine could have.
-inline studies::SweepRow random_sweep_row(Random& random) {
-  studies::SweepRow row;
-  for (std::size_t i = 0; i < studies::counted_figures().size(); ++i) {
+inline studies::sweep::SweepRow random_sweep_row(Random& random) {
+  studies::sweep::SweepRow row;
+  for (std::size_t i = 0; i < studies::figures::counted_figures().size(); ++i) {
     row.counters.emplace_back();
     if (random() % 3 != 0) {
       row.counters.back() = static_cast<std::int64_t>(random() >> (1 + random() % 63));
     }
   }
   row.counters[0] = 1 + static_cast<std::int64_t>(random() % 1000000);
-  for (const std::string_view name : studies::sweep_histogram_names()) {
+  for (const std::string_view name : studies::sweep::sweep_histogram_names()) {
     sim::LogHistogram waits;
     for (std::uint64_t left = random() % 30; left > 0; --left) {
       waits.add(static_cast<std::int64_t>(random() >> (1 + random() % 63)));
@@ -87,23 +87,23 @@ inline studies::SweepRow random_sweep_row(Random& random) {
 }
 
 /// The row of a machine in every run of these tests.
-inline studies::SweepRow made_row(std::size_t machine) {
+inline studies::sweep::SweepRow made_row(std::size_t machine) {
   Random random(machine);
   return random_sweep_row(random);
 }
 
 /// One whose figures can be reported: times that are not 0, and sums that fit.
-inline studies::SweepRow plain_row(std::size_t machine) {
-  studies::SweepRow row = made_row(machine);
+inline studies::sweep::SweepRow plain_row(std::size_t machine) {
+  studies::sweep::SweepRow row = made_row(machine);
   for (std::optional<std::int64_t>& counter : row.counters) {
     counter = static_cast<std::int64_t>(1000 + 10 * machine);
   }
   return row;
 }
 
-inline studies::FrameRow made_frame_row(std::size_t frame) {
-  studies::FrameRow row;
-  row.counters.resize(studies::frame_figures().size());
+inline studies::sweep::FrameRow made_frame_row(std::size_t frame) {
+  studies::sweep::FrameRow row;
+  row.counters.resize(studies::run::frame_figures().size());
   row.counters[frame] = static_cast<std::int64_t>(7 * frame);
   row.scene = "teapot's \"lid\"";
   row.scene_hash = row.image_hash = row.hit_hash = "0123456789abcdef";

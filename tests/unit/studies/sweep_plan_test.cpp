@@ -27,6 +27,12 @@
 #include "tests/unit/studies/sweep_tables.h"
 
 namespace marti::studies {
+
+using namespace host;
+using namespace keys;
+using namespace run;
+using namespace sweep;
+
 namespace {
 
 using test::plan_of;
@@ -245,9 +251,9 @@ TEST(SweepPlan, OneNodeIsThatOfARun) {
         "count.miss_classes = true\nmachine.nodes = 3\n"}) {
     const ReadPoint point = read_point(sweep_config(machine));
     const ReadPoint one = read_point(one_node_config(point));
-    const processors::MachineResult expected =
-        processors::replay(*run.frame.log, processors::one_node_of(point.machine));
-    const processors::MachineResult found = processors::replay(*run.frame.log, one.machine);
+    const processors::replay::MachineResult expected =
+        processors::replay::replay(*run.frame.log, processors::machine::one_node_of(point.machine));
+    const processors::replay::MachineResult found = processors::replay::replay(*run.frame.log, one.machine);
     EXPECT_EQ(found.end, expected.end) << machine;
     EXPECT_EQ(found.time(), expected.time()) << machine;
     EXPECT_EQ(found.references().hits, expected.references().hits) << machine;
@@ -330,8 +336,8 @@ TEST(SweepPlan, BaseAndComparisonAreOnesOwn) {
       "[sweep.compare]\nmachine.nodes = 4\ncache.ways = 1\n");
   ASSERT_EQ(plan.points.size(), 4U);
   for (const SweepPoint& point : plan.points) {
-    const processors::MachineConfig& base = plan.machines[point.base].config;
-    EXPECT_EQ(base.cache.organisation, processors::CacheOrganisation::none);
+    const processors::machine::MachineConfig& base = plan.machines[point.base].config;
+    EXPECT_EQ(base.cache.organisation, processors::machine::CacheOrganisation::none);
     EXPECT_EQ(base.nodes, plan.machines[point.machine].config.nodes);
   }
   EXPECT_EQ(plan.points[0].base, plan.points[1].base);

@@ -15,6 +15,11 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -14,10 +14,14 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace figures;
+using namespace sweep;
+
 namespace {
 
-using processors::MachineConfig;
-using processors::MachineResult;
+using processors::machine::MachineConfig;
+using processors::replay::MachineResult;
 
 std::map<std::string, std::optional<std::int64_t>> named(const SweepRow& row) {
   std::map<std::string, std::optional<std::int64_t>> values;
@@ -48,7 +52,7 @@ MachineConfig any_machine(test::Random& random) {
   } else if (scheme == 1) {
     machine.l2 = {};
     test::make_random_space(random, machine);
-  } else if (scheme == 2 && machine.placement == processors::Placement::shared &&
+  } else if (scheme == 2 && machine.placement == processors::machine::Placement::shared &&
              machine.interconnect.arbitration == memory::Arbitration::fifo) {
     machine.build = test::random_build(random);
   }
@@ -57,9 +61,9 @@ MachineConfig any_machine(test::Random& random) {
 
 RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   test::Random random(seed);
-  const processors::WorkLog log = test::random_tree_log(random, 7, 5);
+  const processors::program::WorkLog log = test::random_tree_log(random, 7, 5);
   const MachineConfig machine = any_machine(random);
-  const MachineResult result = processors::replay(log, machine);
+  const MachineResult result = processors::replay::replay(log, machine);
   const SweepRow row = sweep_row(machine, result);
   RC_ASSERT(row.counters.size() == counted_figures().size());
   auto values = named(row);
@@ -68,14 +72,14 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   RC_ASSERT(value("end") == result.end);
   RC_ASSERT(value("nodes") == static_cast<std::int64_t>(result.nodes.size()));
   std::int64_t time = 0;
-  for (const std::string_view activity : processors::activity_names) {
+  for (const std::string_view activity : processors::cost::activity_names) {
     time += value("time_" + std::string(activity));
   }
   RC_ASSERT(time == result.end * value("nodes"));
   std::int64_t hits = 0;
   std::int64_t misses = 0;
   std::int64_t finish = 0;
-  for (const processors::NodeStatistics& node : result.nodes) {
+  for (const processors::cost::NodeStatistics& node : result.nodes) {
     hits += node.references.all_hits();
     misses += node.references.all_misses();
     finish += node.finish;
@@ -92,7 +96,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   RC_ASSERT(hits == 0);
   RC_ASSERT(misses == 0);
   std::int64_t tests = 0;
-  for (const processors::NodeStatistics& node : result.nodes) {
+  for (const processors::cost::NodeStatistics& node : result.nodes) {
     tests += node.steps.tests;
   }
   RC_ASSERT(value("steps_tests") == tests);
@@ -100,9 +104,9 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
 
 RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   test::Random random(seed);
-  const processors::WorkLog log = test::random_tree_log(random, 7, 5);
+  const processors::program::WorkLog log = test::random_tree_log(random, 7, 5);
   const MachineConfig machine = any_machine(random);
-  const MachineResult result = processors::replay(log, machine);
+  const MachineResult result = processors::replay::replay(log, machine);
   const SweepRow row = sweep_row(machine, result);
   auto values = named(row);
   std::int64_t reads = 0;
@@ -114,7 +118,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   std::int64_t busiest = 0;
   std::int64_t networks = 0;
   std::int64_t bytes = 0;
-  for (const processors::ClusterResult& cluster : result.clusters) {
+  for (const processors::replay::ClusterResult& cluster : result.clusters) {
     reads += cluster.interconnect.reads;
     waits += cluster.interconnect.waits.sum;
     count += cluster.interconnect.waits.count;
@@ -152,8 +156,8 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
       }
     }
   };
-  there("build_", result.build.sharing != processors::Sharing::given);
-  there("tree_", result.build.sharing != processors::Sharing::given);
+  there("build_", result.build.sharing != processors::machine::Sharing::given);
+  there("tree_", result.build.sharing != processors::machine::Sharing::given);
   there("l2_", !result.l2.caches.empty());
   there("contexts_", !result.contexts.nodes.empty());
   there("sharing_", false);
@@ -163,8 +167,8 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
 }
 
 // The counts of a machine that counts everything add up to its misses.
-void expect_counts_that_add_up(const processors::WorkLog& log, const MachineConfig& machine) {
-  const MachineResult result = processors::replay(log, machine);
+void expect_counts_that_add_up(const processors::program::WorkLog& log, const MachineConfig& machine) {
+  const MachineResult result = processors::replay::replay(log, machine);
   auto values = named(sweep_row(machine, result));
   std::int64_t classed = 0;
   for (const std::string_view name : memory::miss_class_names) {
@@ -173,22 +177,23 @@ void expect_counts_that_add_up(const processors::WorkLog& log, const MachineConf
   EXPECT_EQ(classed, values.at("misses"));
   EXPECT_EQ(values.at("sharing_fetches"), values.at("misses"));
   std::int64_t attributed = 0;
-  for (const std::string_view ray : processors::ray_kind_names) {
+  for (const std::string_view ray : processors::program::ray_kind_names) {
     attributed += values.at(std::string(ray) + "_ray_misses").value_or(0);
   }
   const std::int64_t split = values.at("split_misses").value_or(-1);
-  EXPECT_EQ(split > 0, machine.build.sharing != processors::Sharing::given);
+  EXPECT_EQ(split > 0, machine.build.sharing != processors::machine::Sharing::given);
   attributed += split;
   EXPECT_EQ(attributed, values.at("misses"));
 }
 
 TEST(SweepRows, WhatIsCountedOnlyWhenAskedIsThere) {
   test::Random random(11);
-  const processors::WorkLog log = test::random_tree_log(random, 9, 9);
+  const processors::program::WorkLog log = test::random_tree_log(random, 9, 9);
   MachineConfig machine;
   machine.nodes = 3;
   machine.count = {true, true, true};
-  for (const processors::Sharing sharing : {processors::Sharing::given, processors::Sharing::shared}) {
+  for (const processors::machine::Sharing sharing :
+       {processors::machine::Sharing::given, processors::machine::Sharing::shared}) {
     machine.build.sharing = sharing;
     expect_counts_that_add_up(log, machine);
   }

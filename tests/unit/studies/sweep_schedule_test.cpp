@@ -16,6 +16,9 @@
 #include "sim/error.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 using Random = std::mt19937_64;
@@ -34,7 +37,7 @@ SweepPlan random_sweep(Random& random) {
       machine.config.cache.cache.line = 16U << below(random, 4);
       machine.config.nodes = 1 + static_cast<std::uint32_t>(below(random, 9));
       if (below(random, 8) == 0) {
-        machine.config.cache.organisation = processors::CacheOrganisation::none;
+        machine.config.cache.organisation = processors::machine::CacheOrganisation::none;
       }
     }
   }
@@ -132,7 +135,7 @@ class Account {
  private:
   Batch& batch_of(std::size_t machine) {
     return batches_[{plan_.machines[machine].frame,
-                     processors::StrippedLog::key_of(plan_.machines[machine].config)}];
+                     processors::walk::StrippedLog::key_of(plan_.machines[machine].config)}];
   }
 
   [[nodiscard]] std::vector<const Batch*> offered_batches() const {

@@ -20,11 +20,15 @@
 #include "tests/support/random_machine.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
-using processors::MachineConfig;
-using processors::StrippedLog;
-using processors::WorkLog;
+using processors::machine::MachineConfig;
+using processors::program::WorkLog;
+using processors::walk::StrippedLog;
 
 constexpr std::uint64_t plenty = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t enough = StrippedLogCache::fewest_machines;
@@ -97,7 +101,7 @@ TEST(StrippedLogCache, NoneWhereItDoesNotPayOrFit) {
   EXPECT_EQ(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru - 1, no_lru), nullptr);
   EXPECT_NE(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru, no_lru), nullptr);
   MachineConfig without = with_line(32);
-  without.cache.organisation = processors::CacheOrganisation::none;
+  without.cache.organisation = processors::machine::CacheOrganisation::none;
   EXPECT_EQ(cache.get(0, log, without, 100, four_ways), nullptr);
   const auto made = cache.get(0, log, with_line(32), enough, four_ways);
   ASSERT_NE(made, nullptr);
@@ -108,7 +112,7 @@ TEST(StrippedLogCache, NoneWhereItDoesNotPayOrFit) {
   two.cache.cache.size /= 2;
   const std::uint64_t larger = StrippedLog::make(*log, two)->bytes_of_words();
   ASSERT_GT(larger, made->bytes_of_words());
-  const std::uint64_t packets = std::uint64_t{3} * 3 * (sizeof(processors::PacketTotals) + 2 * 8);
+  const std::uint64_t packets = std::uint64_t{3} * 3 * (sizeof(processors::walk::PacketTotals) + 2 * 8);
   StrippedLogCache narrow(StrippedLogCache::most_kept * (made->bytes_of_words() + packets));
   EXPECT_NE(narrow.get(0, log, with_line(32), enough, two_and_four), nullptr);
   EXPECT_EQ(narrow.get(0, log, two, enough, two_and_four), nullptr);

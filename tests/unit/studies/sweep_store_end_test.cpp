@@ -11,6 +11,9 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -28,6 +28,12 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace compare;
+using namespace report;
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;

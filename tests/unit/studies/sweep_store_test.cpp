@@ -18,6 +18,10 @@
 #include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+using namespace tables;
+
 namespace {
 
 namespace fs = std::filesystem;

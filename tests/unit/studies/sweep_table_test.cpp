@@ -11,6 +11,9 @@
 #include "tests/unit/studies/sweep_tables.h"
 
 namespace marti::studies {
+
+using namespace sweep;
+
 namespace {
 
 using test::sweep_config;

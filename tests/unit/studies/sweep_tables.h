@@ -12,13 +12,14 @@
 namespace marti::test {
 
 inline sim::Config sweep_config(std::string_view text, const std::vector<std::string>& assignments = {}) {
-  static const sim::Schema schema = studies::sweep_schema();
+  static const sim::Schema schema = studies::sweep::sweep_schema();
   return sim::Config::from_text(schema, text, "s.toml", assignments);
 }
 
-inline studies::SweepPlan plan_of(std::string_view text, const std::vector<std::string>& assignments = {}) {
+inline studies::sweep::SweepPlan plan_of(std::string_view text,
+                                         const std::vector<std::string>& assignments = {}) {
   sim::Config config = sweep_config(text, assignments);
-  return studies::plan_sweep(config);
+  return studies::sweep::plan_sweep(config);
 }
 
 }  // namespace marti::test

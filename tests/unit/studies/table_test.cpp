@@ -18,9 +18,9 @@
 namespace marti::tests {
 namespace {
 
-using studies::Cell;
-using studies::ColumnType;
-using studies::Table;
+using studies::tables::Cell;
+using studies::tables::ColumnType;
+using studies::tables::Table;
 
 TEST(Table, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Table("t", "", {}), sim::InternalError);
@@ -36,7 +36,7 @@ TEST(Table, RefusesWhatDoesNotFit) {
   EXPECT_EQ(table.rows().size(), 1U);
   EXPECT_THROW(static_cast<void>(table.column("c")), sim::InternalError);
   EXPECT_THROW(static_cast<void>(table.at(1, "a")), sim::InternalError);
-  EXPECT_THROW(static_cast<void>(studies::count_cell(std::numeric_limits<std::uint64_t>::max())),
+  EXPECT_THROW(static_cast<void>(studies::tables::count_cell(std::numeric_limits<std::uint64_t>::max())),
                sim::InternalError);
 }
 
@@ -44,7 +44,7 @@ TEST(Table, ColumnsAreDescribed) {
   const std::vector<Table> tables = {
       Table("one", "", {{"a", ColumnType::integer, "ps", "a time"}, {"b", ColumnType::text, "", "a name"}}),
       Table("two", "", {{"a", ColumnType::real, "byte", "a size"}})};
-  const Table described = describe_columns(tables);
+  const Table described = studies::tables::describe_columns(tables);
   ASSERT_EQ(described.rows().size(), 3U);
   EXPECT_EQ(std::get<std::string>(described.at(2, "table_name")), "two");
   EXPECT_EQ(std::get<std::string>(described.at(0, "unit")), "ps");
@@ -60,7 +60,7 @@ TEST(Table, TextIsAlignedAndInUnitsForPeople) {
                {"share", ColumnType::real, "fraction", ""}});
   table.add_row({"a", std::int64_t{-1234567}, std::int64_t{1'500'000'000'000}, std::int64_t{1536}, 0.125});
   table.add_row({"two\nlines", std::int64_t{999}, Cell(), std::int64_t{0}, 1.0});
-  EXPECT_EQ(text_of(table),
+  EXPECT_EQ(studies::tables::text_of(table),
             "A title\n"
             "  name               count   time  size   share\n"
             "                                s   KiB       %\n"
@@ -79,10 +79,11 @@ TEST(Table, KeysAndBooleansStayWhatTheyAre) {
   table.add_row({std::int64_t{0}, std::int64_t{0}});
   table.add_row({std::int64_t{2}, {}});
   EXPECT_EQ(
-      studies::rows_json(table).dump(),
+      studies::tables::rows_json(table).dump(),
       R"([{"machine.nodes":1,"l2.on":true},{"machine.nodes":0,"l2.on":false},{"machine.nodes":2,"l2.on":null}])");
-  EXPECT_EQ(studies::csv_of(table), "machine.nodes,l2.on\r\n1,true\r\n0,false\r\n2,\r\n");
-  EXPECT_NE(text_of(table).find("1   true\n"), std::string::npos) << text_of(table);
+  EXPECT_EQ(studies::tables::csv_of(table), "machine.nodes,l2.on\r\n1,true\r\n0,false\r\n2,\r\n");
+  EXPECT_NE(studies::tables::text_of(table).find("1   true\n"), std::string::npos)
+      << studies::tables::text_of(table);
 }
 
 TEST(Table, WideningKeepsEveryCell) {
@@ -93,7 +94,8 @@ TEST(Table, WideningKeepsEveryCell) {
   table.add_row({"a", std::int64_t{1}, 0.1});
   table.add_row({"a", std::int64_t{2}, 0.2});
   table.add_row({"b", std::int64_t{2}, 0.3});
-  const Table wide = widen(table, std::array{std::string_view("run")}, "level", "l", "value");
+  const Table wide =
+      studies::tables::widen(table, std::array{std::string_view("run")}, "level", "l", "value");
   ASSERT_EQ(wide.rows().size(), 2U);
   ASSERT_EQ(wide.columns().size(), 3U);
   EXPECT_EQ(std::get<double>(wide.at(0, "l1")), 0.1);

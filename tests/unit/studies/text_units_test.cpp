@@ -7,6 +7,9 @@
 #include <limits>
 
 namespace marti::studies {
+
+using namespace tables;
+
 namespace {
 
 TEST(TextUnits, TimesHaveThreeDecimalsInTheLargestUnit) {

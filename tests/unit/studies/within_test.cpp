@@ -15,6 +15,11 @@
 #include "studies/run/prepared_frame.h"
 
 namespace marti::studies {
+
+using namespace estimate;
+using namespace keys;
+using namespace run;
+
 namespace {
 
 TEST(Within, TolerancesArePercentagesOrFractions) {
@@ -30,9 +35,9 @@ TEST(Within, TolerancesArePercentagesOrFractions) {
 }
 
 TEST(Within, WhatIsNotSampledSaysWhy) {
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   EXPECT_FALSE(not_sampled(machine));
-  machine.scheme = processors::Scheme::pipeline;
+  machine.scheme = processors::machine::Scheme::pipeline;
   ASSERT_TRUE(not_sampled(machine));
   EXPECT_NE(not_sampled(machine)->find("scheme"), std::string::npos);
   FrameConfig frame;
@@ -40,7 +45,7 @@ TEST(Within, WhatIsNotSampledSaysWhy) {
   frame.render.voxel_cut = 1.0;
   EXPECT_TRUE(not_sampled(frame));
   frame.render.voxel_cut = 0.0;
-  frame.render.integrator = processors::Integrator::path;
+  frame.render.integrator = processors::program::Integrator::path;
   ASSERT_TRUE(not_sampled(frame));
   EXPECT_NE(not_sampled(frame)->find("image.integrator"), std::string::npos);
 }
@@ -56,11 +61,11 @@ FrameConfig teapot(std::uint32_t side) {
   return frame;
 }
 
-WithinAnswer answer_of(const PreparedFrame& prepared, const processors::MachineConfig& machine,
+WithinAnswer answer_of(const PreparedFrame& prepared, const processors::machine::MachineConfig& machine,
                        double tolerance, double* traced = nullptr, std::uint64_t seed = 1) {
-  const processors::RenderOptions& render = prepared.config().render;
+  const processors::program::RenderOptions& render = prepared.config().render;
   SampledFrame frame = sampled_frame(prepared);
-  const processors::PacketList packets(render.width, render.height, machine.packets);
+  const processors::machine::PacketList packets(render.width, render.height, machine.packets);
   const WithinAnswer answer = estimate_within(frame, packets, machine, tolerance, seed);
   if (traced != nullptr && answer.estimate) {
     *traced = frame.traced().pixels;
@@ -72,17 +77,17 @@ WithinAnswer answer_of(const PreparedFrame& prepared, const processors::MachineC
 // The scene is one of those that the errors were measured on, the view and the machines are not.
 TEST(Within, AnEstimateIsNeverWiderThanAskedForAndHolds) {
   const PreparedFrame prepared(teapot(256));
-  const processors::Frame whole = prepared.trace();
+  const processors::program::Frame whole = prepared.trace();
   int estimates = 0;
   std::uint64_t seed = 0;
   std::array<int, figure_count> held{};
   for (const std::uint32_t nodes : {1, 2, 4, 8}) {
     for (const std::uint64_t cache : {2048, 8192, 65536}) {
-      processors::MachineConfig machine;
+      processors::machine::MachineConfig machine;
       machine.nodes = nodes;
-      machine.packets = {4, 4, processors::PacketOrder::scanline};
+      machine.packets = {4, 4, processors::machine::PacketOrder::scanline};
       machine.cache.cache.size = cache;
-      const MachineFigures exact = figures_of(machine, processors::replay(*whole.log, machine));
+      const MachineFigures exact = figures_of(machine, processors::replay::replay(*whole.log, machine));
       double last = 0.0;
       ++seed;
       for (const double tolerance : {0.5, 0.2, 0.1}) {
@@ -117,7 +122,7 @@ TEST(Within, AnEstimateIsNeverWiderThanAskedForAndHolds) {
 
 TEST(Within, ASampleThatWouldBeMostOfTheFrameIsNotTaken) {
   const PreparedFrame small(teapot(64));
-  processors::MachineConfig machine;
+  processors::machine::MachineConfig machine;
   machine.nodes = 64;
   EXPECT_FALSE(answer_of(small, machine, 0.2).estimate);
   EXPECT_NE(answer_of(small, machine, 0.2).reason.find("of the pixels"), std::string::npos);
@@ -130,9 +135,9 @@ TEST(Within, SmallFramesHaveNoSample) {
     const PreparedFrame prepared(teapot(side));
     for (const std::uint32_t packet : {1, 64}) {
       for (const std::uint32_t nodes : {1, 500}) {
-        processors::MachineConfig machine;
+        processors::machine::MachineConfig machine;
         machine.nodes = nodes;
-        machine.packets = {packet, packet, processors::PacketOrder::scanline};
+        machine.packets = {packet, packet, processors::machine::PacketOrder::scanline};
         EXPECT_FALSE(answer_of(prepared, machine, 0.5).estimate) << side << ' ' << packet << ' ' << nodes;
       }
     }

@@ -12,7 +12,7 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
 
 }  // namespace
 
-Database::Database(const memory::LayoutConfig& config, const processors::WorkLog& log)
+Database::Database(const memory::LayoutConfig& config, const processors::program::WorkLog& log)
     : config_(config), log_(log), record_of_(log.topology.nodes.size()) {
   std::uint64_t first = place(0);
   switch (config.node_order) {

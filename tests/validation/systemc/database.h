@@ -19,7 +19,7 @@ struct Extent {
 
 class Database {
  public:
-  Database(const memory::LayoutConfig& config, const processors::WorkLog& log);
+  Database(const memory::LayoutConfig& config, const processors::program::WorkLog& log);
 
   /// Without bytes for a leaf that has no record.
   [[nodiscard]] Extent node(std::uint32_t number) const;
@@ -38,7 +38,7 @@ class Database {
   void place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_t used);
 
   memory::LayoutConfig config_;
-  const processors::WorkLog& log_;
+  const processors::program::WorkLog& log_;
   std::vector<std::uint32_t> record_of_;  // of each tree node
   std::uint32_t records_ = 0;             // of tree nodes, placed so far
   std::uint64_t lists_ = 0;

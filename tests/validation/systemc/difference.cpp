@@ -64,18 +64,18 @@ class Comparison {
   std::string place_;
 };
 
-void compare_nodes(Comparison& compare, const processors::MachineResult& replay,
+void compare_nodes(Comparison& compare, const processors::replay::MachineResult& replay,
                    const MachineFigures& systemc) {
   compare.equal("nodes", std::ssize(replay.nodes), std::ssize(systemc.nodes));
   for (std::size_t n = 0; n < std::min(replay.nodes.size(), systemc.nodes.size()); ++n) {
     const std::string node = "node " + std::to_string(n);
-    const processors::NodeStatistics& a = replay.nodes[n];
-    const processors::NodeStatistics& b = systemc.nodes[n];
+    const processors::cost::NodeStatistics& a = replay.nodes[n];
+    const processors::cost::NodeStatistics& b = systemc.nodes[n];
     compare.at(node);
     compare.counters(a, b);
     compare.counters(a.steps, b.steps);
     compare.at(node + " time of");
-    compare.arrays(a.time, b.time, processors::activity_names);
+    compare.arrays(a.time, b.time, processors::cost::activity_names);
     compare.at(node + " hits of");
     compare.arrays(a.references.hits, b.references.hits, memory::record_kind_names);
     compare.at(node + " misses of");
@@ -83,12 +83,12 @@ void compare_nodes(Comparison& compare, const processors::MachineResult& replay,
   }
 }
 
-void compare_clusters(Comparison& compare, const processors::MachineResult& replay,
+void compare_clusters(Comparison& compare, const processors::replay::MachineResult& replay,
                       const MachineFigures& systemc) {
   compare.equal("clusters", std::ssize(replay.clusters), std::ssize(systemc.clusters));
   for (std::size_t c = 0; c < std::min(replay.clusters.size(), systemc.clusters.size()); ++c) {
     const std::string cluster = "cluster " + std::to_string(c);
-    const processors::ClusterResult& a = replay.clusters[c];
+    const processors::replay::ClusterResult& a = replay.clusters[c];
     const ClusterFigures& b = systemc.clusters[c];
     compare.at(cluster);
     compare.counters(a.interconnect, b.interconnect);
@@ -104,7 +104,8 @@ void compare_clusters(Comparison& compare, const processors::MachineResult& repl
 
 }  // namespace
 
-std::vector<std::string> differences(const processors::MachineResult& replay, const MachineFigures& systemc) {
+std::vector<std::string> differences(const processors::replay::MachineResult& replay,
+                                     const MachineFigures& systemc) {
   Comparison compare;
   compare.at("machine");
   compare.equal("end", replay.end, systemc.end);

@@ -11,7 +11,7 @@ namespace marti::oracle {
 
 /// One line for each figure that differs: end, every counter of each node, cluster, bank and the host, and
 /// all waits with their histograms. Empty if nothing differs.
-[[nodiscard]] std::vector<std::string> differences(const processors::MachineResult& replay,
+[[nodiscard]] std::vector<std::string> differences(const processors::replay::MachineResult& replay,
                                                    const MachineFigures& systemc);
 
 }  // namespace marti::oracle

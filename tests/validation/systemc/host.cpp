@@ -47,7 +47,7 @@ void add_morton(std::vector<Vector>& cells, Vector corner, int side) {
 }  // namespace
 
 std::vector<Rectangle> cut_into_packets(std::uint32_t width, std::uint32_t height,
-                                        const processors::PacketConfig& config) {
+                                        const processors::machine::PacketConfig& config) {
   const auto columns = static_cast<int>((width + config.width - 1) / config.width);
   const auto rows = static_cast<int>((height + config.height - 1) / config.height);
   int side = 1;
@@ -56,17 +56,17 @@ std::vector<Rectangle> cut_into_packets(std::uint32_t width, std::uint32_t heigh
   }
   std::vector<Vector> cells;
   switch (config.order) {
-    case processors::PacketOrder::scanline:
+    case processors::machine::PacketOrder::scanline:
       for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
           cells.push_back({column, row});
         }
       }
       break;
-    case processors::PacketOrder::morton:
+    case processors::machine::PacketOrder::morton:
       add_morton(cells, {}, side);
       break;
-    case processors::PacketOrder::hilbert:
+    case processors::machine::PacketOrder::hilbert:
       add_hilbert(cells, {}, {1, 0}, {0, 1}, side);
       break;
   }
@@ -81,7 +81,7 @@ std::vector<Rectangle> cut_into_packets(std::uint32_t width, std::uint32_t heigh
   return packets;
 }
 
-Host::Host(const sc_core::sc_module_name& name, Turns& turns, const processors::HostConfig& config,
+Host::Host(const sc_core::sc_module_name& name, Turns& turns, const processors::machine::HostConfig& config,
            std::vector<Rectangle> packets, std::uint32_t nodes)
     : sc_module(name),
       later_("later", turns),
@@ -93,13 +93,13 @@ Host::Host(const sc_core::sc_module_name& name, Turns& turns, const processors::
   const std::uint64_t all = packets_.size();
   for (std::size_t packet = 0; packet < all; ++packet) {
     switch (assignment_) {
-      case processors::Assignment::dynamic:
+      case processors::machine::Assignment::dynamic:
         share_[0].push_back(packet);
         break;
-      case processors::Assignment::interleaved:
+      case processors::machine::Assignment::interleaved:
         share_[packet % nodes].push_back(packet);
         break;
-      case processors::Assignment::blocks: {
+      case processors::machine::Assignment::blocks: {
         std::uint64_t node = 0;
         while (packet >= all * (node + 1) / nodes) {
           ++node;
@@ -112,7 +112,7 @@ Host::Host(const sc_core::sc_module_name& name, Turns& turns, const processors::
 }
 
 void Host::ask(std::uint32_t node, PacketUser& user) {
-  const bool dynamic = assignment_ == processors::Assignment::dynamic;
+  const bool dynamic = assignment_ == processors::machine::Assignment::dynamic;
   std::deque<std::size_t>& share = share_[dynamic ? 0 : node];
   statistics_.requests += dynamic ? 1 : 0;
   if (share.empty()) {

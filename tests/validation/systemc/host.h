@@ -22,7 +22,7 @@ struct Rectangle {
 
 /// All packets of an image in the order in which they are handed out.
 [[nodiscard]] std::vector<Rectangle> cut_into_packets(std::uint32_t width, std::uint32_t height,
-                                                      const processors::PacketConfig& config);
+                                                      const processors::machine::PacketConfig& config);
 
 class PacketUser {
  public:
@@ -39,10 +39,10 @@ class HostInterface : public virtual sc_core::sc_interface {
 
 class Host : public sc_core::sc_module, public HostInterface {
  public:
-  Host(const sc_core::sc_module_name& name, Turns& turns, const processors::HostConfig& config,
+  Host(const sc_core::sc_module_name& name, Turns& turns, const processors::machine::HostConfig& config,
        std::vector<Rectangle> packets, std::uint32_t nodes);
   void ask(std::uint32_t node, PacketUser& user) override;
-  [[nodiscard]] const processors::HostStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const processors::node::HostStatistics& statistics() const { return statistics_; }
   [[nodiscard]] std::size_t packets() const { return packets_.size(); }
 
  private:
@@ -53,14 +53,14 @@ class Host : public sc_core::sc_module, public HostInterface {
   void serve();
 
   Later later_;
-  processors::Assignment assignment_;
+  processors::machine::Assignment assignment_;
   Time latency_;
   Time occupancy_;
   std::vector<Rectangle> packets_;
   std::vector<std::deque<std::size_t>> share_;  // packets of each node; all in the first when dynamic
   std::deque<Request> waiting_;
   bool busy_ = false;
-  processors::HostStatistics statistics_;
+  processors::node::HostStatistics statistics_;
 };
 
 }  // namespace marti::oracle

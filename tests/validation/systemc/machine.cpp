@@ -7,10 +7,10 @@
 
 namespace marti::oracle {
 
-Machine::Machine(const sc_core::sc_module_name& name, const processors::WorkLog& log,
-                 const processors::MachineConfig& config)
+Machine::Machine(const sc_core::sc_module_name& name, const processors::program::WorkLog& log,
+                 const processors::machine::MachineConfig& config)
     : sc_module(name),
-      ticks_(processors::step_ticks(config, log)),
+      ticks_(processors::cost::step_ticks(config, log)),
       database_(config.layout, log),
       turns_("turns"),
       host_("host", turns_, config.host, cut_into_packets(log.width, log.height, config.packets),
@@ -36,8 +36,8 @@ MachineFigures Machine::figures() const {
     figures.nodes.push_back(node->statistics());
     figures.end = std::max({figures.end, node->statistics().finish, node->last_write()});
   }
-  for (processors::NodeStatistics& node : figures.nodes) {
-    node.time[static_cast<std::size_t>(processors::Activity::idle)] = figures.end - node.finish;
+  for (processors::cost::NodeStatistics& node : figures.nodes) {
+    node.time[static_cast<std::size_t>(processors::cost::Activity::idle)] = figures.end - node.finish;
   }
   for (const auto& interconnect : interconnects_) {
     ClusterFigures cluster{interconnect->statistics(), interconnect->waits().times(), {}};

@@ -36,26 +36,26 @@ struct ClusterFigures {
 };
 struct MachineFigures {
   Time end = 0;
-  std::vector<processors::NodeStatistics> nodes;
+  std::vector<processors::cost::NodeStatistics> nodes;
   std::vector<ClusterFigures> clusters;
-  processors::HostStatistics host;
+  processors::node::HostStatistics host;
   std::uint64_t packets = 0;
 };
 
 /// Throws InternalError for a machine with any part that this model lacks: the model could not check
 /// that part.
-void refuse_what_is_not_modelled(const processors::MachineConfig& config);
+void refuse_what_is_not_modelled(const processors::machine::MachineConfig& config);
 
 class Machine : public sc_core::sc_module {
  public:
   /// Log and configuration must outlive it.
-  Machine(const sc_core::sc_module_name& name, const processors::WorkLog& log,
-          const processors::MachineConfig& config);
+  Machine(const sc_core::sc_module_name& name, const processors::program::WorkLog& log,
+          const processors::machine::MachineConfig& config);
   /// After the simulation. Throws InternalError when a node has not finished.
   [[nodiscard]] MachineFigures figures() const;
 
  private:
-  processors::StepTicks ticks_;
+  processors::cost::StepTicks ticks_;
   Database database_;
   Turns turns_;
   Host host_;

@@ -15,9 +15,9 @@ void ensure_one_of(Enum value, std::initializer_list<Enum> modelled, const char*
   sim::ensure(std::find(modelled.begin(), modelled.end(), value) != modelled.end(), message);
 }
 
-void refuse(const processors::NodeCacheConfig& config) {
+void refuse(const processors::machine::NodeCacheConfig& config) {
   using memory::Replacement;
-  using processors::CacheOrganisation;
+  using processors::machine::CacheOrganisation;
   [[maybe_unused]] const auto& [organisation, cache, split_sizes, hit_cycles] = config;
   [[maybe_unused]] const auto& [size, line, ways, replacement, seed] = cache;
   ensure_one_of(organisation, {CacheOrganisation::none, CacheOrganisation::unified, CacheOrganisation::split},
@@ -38,9 +38,9 @@ void refuse(const memory::InterconnectConfig& config) {
               "the SystemC model's bus is granted by fifo");
 }
 
-void refuse(const processors::PacketConfig& packets, const processors::HostConfig& host) {
-  using processors::Assignment;
-  using processors::PacketOrder;
+void refuse(const processors::machine::PacketConfig& packets, const processors::machine::HostConfig& host) {
+  using processors::machine::Assignment;
+  using processors::machine::PacketOrder;
   [[maybe_unused]] const auto& [width, height, order] = packets;
   [[maybe_unused]] const auto& [assignment, clock, latency_cycles, occupancy_cycles] = host;
   ensure_one_of(order, {PacketOrder::scanline, PacketOrder::morton, PacketOrder::hilbert},
@@ -50,7 +50,7 @@ void refuse(const processors::PacketConfig& packets, const processors::HostConfi
 }
 
 void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
-            const processors::LocalMemoryConfig& local) {
+            const processors::machine::LocalMemoryConfig& local) {
   using memory::NodeOrder;
   [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
                                 section_alignment, order, treelet] = layout;
@@ -65,8 +65,8 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
 
 }  // namespace
 
-void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
-  using processors::Placement;
+void refuse_what_is_not_modelled(const processors::machine::MachineConfig& config) {
+  using processors::machine::Placement;
   // network, messages, pipeline and space have a meaning only in schemes that are refused; distribution and
   // network only with a placement that is; switch_cycles only with more than one context. Energy changes no
   // time.
@@ -75,10 +75,11 @@ void refuse_what_is_not_modelled(const processors::MachineConfig& config) {
                                 interconnect, banks, packets, host, build, scheme, network, messages,
                                 pipeline, space, count, energy] = config;
   sim::ensure(contexts == 1 && !prefetch.on(), "a node of the SystemC model has one context and no prefetch");
-  sim::ensure(l2.sharing == processors::SecondLevel::none, "the SystemC model has no second-level caches");
+  sim::ensure(l2.sharing == processors::machine::SecondLevel::none,
+              "the SystemC model has no second-level caches");
   sim::ensure(!count.any(), "the SystemC model does not classify misses");
-  sim::ensure(scheme == processors::Scheme::image, "the SystemC model has the image scheme only");
-  sim::ensure(build.sharing == processors::Sharing::given, "the SystemC model's tree is given");
+  sim::ensure(scheme == processors::machine::Scheme::image, "the SystemC model has the image scheme only");
+  sim::ensure(build.sharing == processors::machine::Sharing::given, "the SystemC model's tree is given");
   ensure_one_of(placement, {Placement::shared, Placement::replicated},
                 "the SystemC model has no such placement");
   refuse(cache);

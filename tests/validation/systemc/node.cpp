@@ -7,12 +7,12 @@
 namespace marti::oracle {
 
 using memory::RecordKind;
-using processors::Activity;
-using processors::CacheOrganisation;
+using processors::cost::Activity;
+using processors::machine::CacheOrganisation;
 
 Node::Node(const sc_core::sc_module_name& name, Turns& turns, std::uint32_t number,
-           const processors::MachineConfig& config, const processors::WorkLog& log, const Database& database,
-           const processors::StepTicks& ticks)
+           const processors::machine::MachineConfig& config, const processors::program::WorkLog& log,
+           const Database& database, const processors::cost::StepTicks& ticks)
     : sc_module(name),
       socket("socket"),
       host("host"),
@@ -140,8 +140,8 @@ bool Node::look_up(std::uint64_t line) {
 }
 
 bool Node::miss(std::uint64_t address, std::uint64_t bytes) {
-  if (config_.placement == processors::Placement::replicated) {
-    const processors::LocalMemoryConfig& local = config_.local;
+  if (config_.placement == processors::machine::Placement::replicated) {
+    const processors::machine::LocalMemoryConfig& local = config_.local;
     const auto beats = static_cast<std::int64_t>((bytes + local.width - 1) / local.width);
     const Time access = local.clock.period() * local.access_cycles;
     const Time transfer = local.clock.period() * local.cycles_per_beat * beats;

@@ -24,14 +24,14 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
  public:
   /// All references must outlive it.
   Node(const sc_core::sc_module_name& name, Turns& turns, std::uint32_t number,
-       const processors::MachineConfig& config, const processors::WorkLog& log, const Database& database,
-       const processors::StepTicks& ticks);
+       const processors::machine::MachineConfig& config, const processors::program::WorkLog& log,
+       const Database& database, const processors::cost::StepTicks& ticks);
 
   tlm_utils::simple_initiator_socket<Node> socket;
   sc_core::sc_port<HostInterface> host;
 
   /// All statistics except the idle time, which is known when all nodes are done.
-  [[nodiscard]] const processors::NodeStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const processors::cost::NodeStatistics& statistics() const { return statistics_; }
   [[nodiscard]] bool finished() const { return finished_; }
   /// When its last write was done; 0 if it made none.
   [[nodiscard]] Time last_write() const { return last_write_; }
@@ -52,7 +52,7 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
   void send(tlm::tlm_generic_payload& payload);
   void write();
   void account(const Course& course);
-  void spend(processors::Activity activity, Time time) {
+  void spend(processors::cost::Activity activity, Time time) {
     statistics_.time[static_cast<std::size_t>(activity)] += time;
   }
   void take_turn(Turn turn, std::uint32_t node) override;
@@ -62,9 +62,9 @@ class Node : public sc_core::sc_module, public TurnTaker, public PacketUser {
 
   Turns& turns_;
   std::uint32_t number_;
-  const processors::MachineConfig& config_;
+  const processors::machine::MachineConfig& config_;
   Time hit_;
-  processors::NodeStatistics statistics_;
+  processors::cost::NodeStatistics statistics_;
   std::vector<NaiveCache> caches_;
   Program program_;
   sc_core::sc_event awake_;

@@ -5,8 +5,8 @@
 namespace marti::oracle {
 
 using memory::RecordKind;
-using processors::Activity;
-using processors::Step;
+using processors::cost::Activity;
+using processors::program::Step;
 
 namespace {
 
@@ -55,8 +55,8 @@ void Program::end_pixel(std::vector<Operation>& operations) {
 
 void Program::step(std::vector<Operation>& operations) {
   const std::uint32_t word = next_word();
-  const std::uint32_t operand = processors::operand_of(word);
-  switch (processors::step_of(word)) {
+  const std::uint32_t operand = processors::program::operand_of(word);
+  switch (processors::program::step_of(word)) {
     case Step::branch:
       ++steps_.branches;
       operations.push_back(compute(Activity::traversal, ticks_.branch));

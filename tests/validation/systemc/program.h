@@ -17,17 +17,17 @@ namespace marti::oracle {
 struct Operation {
   enum class Kind : std::uint8_t { compute, read, write };
   Kind kind = Kind::compute;
-  processors::Activity activity = processors::Activity::idle;  ///< compute
-  Time duration = 0;                                           ///< compute
-  memory::RecordKind record = memory::RecordKind::node;        ///< read
-  Extent extent;                                               ///< read and write
+  processors::cost::Activity activity = processors::cost::Activity::idle;  ///< compute
+  Time duration = 0;                                                       ///< compute
+  memory::RecordKind record = memory::RecordKind::node;                    ///< read
+  Extent extent;                                                           ///< read and write
 };
 
 class Program {
  public:
   /// All must outlive it. What is done is counted in `steps`.
-  Program(const processors::WorkLog& log, const Database& database, const processors::StepTicks& ticks,
-          processors::StepCounts& steps)
+  Program(const processors::program::WorkLog& log, const Database& database,
+          const processors::cost::StepTicks& ticks, processors::cost::StepCounts& steps)
       : log_(log), database_(database), ticks_(ticks), steps_(steps) {}
 
   void begin(const Rectangle& packet);
@@ -43,10 +43,10 @@ class Program {
   void test(std::uint32_t primitive, std::vector<Operation>& operations);
   std::uint32_t next_word() { return log_.rows[y_].words[word_++]; }
 
-  const processors::WorkLog& log_;
+  const processors::program::WorkLog& log_;
   const Database& database_;
-  const processors::StepTicks& ticks_;
-  processors::StepCounts& steps_;
+  const processors::cost::StepTicks& ticks_;
+  processors::cost::StepCounts& steps_;
   Rectangle packet_;
   std::uint32_t x_ = 0;
   std::uint32_t y_ = 0;

@@ -12,8 +12,8 @@ namespace marti::oracle {
 
 /// One machine and the log it works on. The objects must outlive the simulation.
 struct Job {
-  const processors::WorkLog* log = nullptr;
-  const processors::MachineConfig* config = nullptr;
+  const processors::program::WorkLog* log = nullptr;
+  const processors::machine::MachineConfig* config = nullptr;
 };
 
 struct Simulation {

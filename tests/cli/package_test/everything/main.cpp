@@ -11,10 +11,11 @@ int main() {
   const marti::scenes::Scene scene = marti::scenes::make_procedural("tetra:2");
   const auto triangles = std::make_shared<const marti::accel::TriangleSet>(scene);
   const auto structure = marti::accel::make_structure("octree", triangles);
-  marti::processors::RenderOptions options;
+  marti::processors::program::RenderOptions options;
   options.width = 16;
   options.height = 16;
-  const marti::processors::Frame frame = marti::processors::render(scene, *triangles, *structure, options, 1);
+  const marti::processors::program::Frame frame =
+      marti::processors::program::render(scene, *triangles, *structure, options, 1);
   const marti::memory::Cache cache(marti::memory::CacheConfig{});
   std::printf("%u triangles, %llu rays, %llu lines\n", triangles->size(),
               static_cast<unsigned long long>(frame.rays.all()),
