@@ -61,9 +61,9 @@
 #include "studies/tables/page_file.h"
 #include "studies/version.h"
 
-namespace {
+namespace marti::studies::cli {
 
-using namespace marti;
+namespace {
 
 constexpr int done = 0;
 constexpr int our_fault = 1;
@@ -97,7 +97,7 @@ struct RunArguments {
 };
 
 // `exact` has a meter.
-void run_within_command(const RunArguments& arguments, sim::Config& config, studies::run::RunOptions exact) {
+void run_within_command(const RunArguments& arguments, sim::Config& config, run::RunOptions exact) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
   }
@@ -108,55 +108,54 @@ void run_within_command(const RunArguments& arguments, sim::Config& config, stud
   }
   double tolerance = 0.0;
   try {
-    tolerance = studies::estimate::parse_tolerance(arguments.within);
+    tolerance = estimate::parse_tolerance(arguments.within);
   } catch (const sim::UserError& error) {
     throw sim::UserError("--within: " + std::string(error.what()));
   }
-  std::optional<studies::progress::ShownMeter> shown(std::in_place, *exact.meter);
-  const std::string text = studies::estimate::run_within(config, tolerance, arguments.json, std::move(exact));
+  std::optional<progress::ShownMeter> shown(std::in_place, *exact.meter);
+  const std::string text = estimate::run_within(config, tolerance, arguments.json, std::move(exact));
   shown.reset();  // before anything is printed
   print(text);
 }
 
 void run_command(const RunArguments& arguments) {
-  studies::keys::require_config_file(arguments.config);
-  sim::Schema schema = studies::run::run_schema();
-  studies::keys::declare_price_keys(schema);
+  keys::require_config_file(arguments.config);
+  sim::Schema schema = run::run_schema();
+  keys::declare_price_keys(schema);
   sim::Config config = sim::Config::from_file(schema, arguments.config, arguments.assignments);
-  studies::run::RunOptions options;
+  run::RunOptions options;
   options.directory = arguments.directory;
-  options.keep = studies::run::KeptItems(arguments.keep);
-  options.what_helps = arguments.no_what_helps ? studies::helps::Measuring::none
-                       : arguments.what_helps  ? studies::helps::Measuring::all
-                                               : studies::helps::Measuring::within_budget;
-  options.prices = studies::keys::read_given_prices(config);
+  options.keep = run::KeptItems(arguments.keep);
+  options.what_helps = arguments.no_what_helps ? helps::Measuring::none
+                       : arguments.what_helps  ? helps::Measuring::all
+                                               : helps::Measuring::within_budget;
+  options.prices = keys::read_given_prices(config);
   sim::WorkMeter meter;
   options.meter = &meter;
   if (!arguments.within.empty()) {
     run_within_command(arguments, config, std::move(options));
     return;
   }
-  const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
+  const sim::MadeDirectory made = show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::host::load_image_library();
+    host::load_image_library();
   }
-  std::optional<studies::progress::ShownMeter> shown(std::in_place, meter);
-  const studies::run::RunResult result = studies::run::run(config, std::move(options));
-  const studies::run::PlanVerdict verdict =
-      arguments.verify_plan ? studies::run::verify_plan(result) : studies::run::PlanVerdict();
+  std::optional<progress::ShownMeter> shown(std::in_place, meter);
+  const run::RunResult result = run::run(config, std::move(options));
+  const run::PlanVerdict verdict = arguments.verify_plan ? run::verify_plan(result) : run::PlanVerdict();
   shown.reset();  // before anything is printed
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
-  studies::show::WrittenRun written;
+  show::WrittenRun written;
   if (!arguments.directory.empty()) {
-    written = studies::show::write_output(result, arguments.directory);
+    written = show::write_output(result, arguments.directory);
   }
   if (arguments.json) {
-    print(written.json.empty() ? studies::run::json_of(result) : written.json);
+    print(written.json.empty() ? run::json_of(result) : written.json);
     return;
   }
-  std::string text = studies::run::summary_of(result) + verdict.text;
+  std::string text = run::summary_of(result) + verdict.text;
   for (const std::filesystem::path& file : written.files) {
     text += "wrote         " + file.string() + "\n";
   }
@@ -183,31 +182,31 @@ std::string no_empty_file(const std::string& name) {
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
   if (!arguments.config.empty()) {
-    studies::keys::require_config_file(arguments.config);
+    keys::require_config_file(arguments.config);
   }
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
-  const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
+  const sim::MadeDirectory made = show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
-    studies::host::load_image_library();
+    host::load_image_library();
   }
   sim::WorkMeter meter;
-  std::optional<studies::progress::ShownMeter> shown(std::in_place, meter);
-  const studies::tables::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
+  std::optional<progress::ShownMeter> shown(std::in_place, meter);
+  const tables::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
   shown.reset();  // before anything is printed
   std::string text = output.report;
   if (!output.host_report.empty()) {
     text += "\n" + output.host_report;
   }
-  for (const studies::tables::StudyImage& image : output.images) {
-    if (const std::string note = studies::host::note_of_infinities(image.image); !note.empty()) {
+  for (const tables::StudyImage& image : output.images) {
+    if (const std::string note = host::note_of_infinities(image.image); !note.empty()) {
       text += "note: " + image.name + ": " + note + "\n";
     }
   }
   if (!arguments.directory.empty()) {
     text += "\n";
-    for (const std::filesystem::path& file : studies::tables::write_study(output, arguments.directory)) {
+    for (const std::filesystem::path& file : tables::write_study(output, arguments.directory)) {
       text += "wrote " + file.string() + "\n";
     }
   }
@@ -244,22 +243,19 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
   }
-  operations->callback(
-      [&] { run_study(arguments, studies::run::run_schema(), studies::operations::run_operations); });
-  paper->callback([&] { run_study(arguments, studies::paper::paper_schema(), studies::paper::run_paper); });
-  frames->callback([&] { run_study(arguments, studies::run::run_schema(), studies::frames::run_frames); });
-  schemes->callback(
-      [&] { run_study(arguments, studies::schemes::schemes_schema(), studies::schemes::run_schemes); });
-  error->callback([&] { run_study(arguments, studies::error::error_schema(), studies::error::run_error); });
+  operations->callback([&] { run_study(arguments, run::run_schema(), operations::run_operations); });
+  paper->callback([&] { run_study(arguments, paper::paper_schema(), paper::run_paper); });
+  frames->callback([&] { run_study(arguments, run::run_schema(), frames::run_frames); });
+  schemes->callback([&] { run_study(arguments, schemes::schemes_schema(), schemes::run_schemes); });
+  error->callback([&] { run_study(arguments, error::error_schema(), error::run_error); });
   stability->callback([&] {
-    run_study(arguments, studies::stability::stability_schema(),
-              [](sim::Config& config, sim::WorkMeter* meter) {
-                return studies::stability::run_stability(config, meter);
-              });
+    run_study(arguments, stability::stability_schema(), [](sim::Config& config, sim::WorkMeter* meter) {
+      return stability::run_stability(config, meter);
+    });
   });
 }
 
-void add_sweep_command(CLI::App& app, studies::cli::SweepArguments& arguments) {
+void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
   CLI::App* sweep =
       app.add_subcommand("sweep",
                          "Times every machine of a configuration's [sweep] or of axes given here; "
@@ -294,7 +290,7 @@ void add_sweep_command(CLI::App& app, studies::cli::SweepArguments& arguments) {
   sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
   sweep->add_flag("--quiet", arguments.quiet, "no progress");
   sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
-  sweep->callback([&] { studies::cli::sweep_command(arguments, print); });
+  sweep->callback([&] { sweep_command(arguments, print); });
 }
 
 struct TraceArguments {
@@ -303,7 +299,7 @@ struct TraceArguments {
   std::string directory;
   std::string format = "din";
   std::string limit = "4 GiB";
-  studies::run::TraceOptions options;
+  run::TraceOptions options;
 };
 
 void add_trace_command(CLI::App& app, TraceArguments& arguments) {
@@ -330,12 +326,11 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     } catch (const sim::UserError& error) {
       throw sim::UserError("--limit: " + std::string(error.what()));
     }
-    studies::keys::require_config_file(arguments.config);
-    sim::Config config =
-        sim::Config::from_file(studies::run::run_schema(), arguments.config, arguments.assignments);
-    const sim::MadeDirectory made = studies::show::prepare_output(arguments.directory);
+    keys::require_config_file(arguments.config);
+    sim::Config config = sim::Config::from_file(run::run_schema(), arguments.config, arguments.assignments);
+    const sim::MadeDirectory made = show::prepare_output(arguments.directory);
     print(sim::with_places(
-        config, [&] { return studies::run::write_traces(config, arguments.options, arguments.directory); }));
+        config, [&] { return run::write_traces(config, arguments.options, arguments.directory); }));
   });
 }
 
@@ -343,18 +338,18 @@ struct CompareArguments {
   std::string a;
   std::string b;
   std::string page;
-  studies::compare::CompareOptions options;
+  compare::CompareOptions options;
 };
 
 void compare_command(const CompareArguments& arguments) {
   if (arguments.page.empty()) {
-    print(studies::compare::compare_results(arguments.a, arguments.b, arguments.options));
+    print(compare::compare_results(arguments.a, arguments.b, arguments.options));
     return;
   }
-  studies::tables::check_page_target(arguments.page);
-  studies::compare::ComparisonPage page;
-  std::string text = studies::compare::compare_results(arguments.a, arguments.b, arguments.options, &page);
-  studies::tables::write_page(arguments.page, studies::compare::html_of(page));
+  tables::check_page_target(arguments.page);
+  compare::ComparisonPage page;
+  std::string text = compare::compare_results(arguments.a, arguments.b, arguments.options, &page);
+  tables::write_page(arguments.page, compare::html_of(page));
   print(arguments.options.json ? text : text + "\nwrote " + arguments.page + "\n");
 }
 
@@ -373,7 +368,7 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->callback([&] { compare_command(arguments); });
 }
 
-void add_report_command(CLI::App& app, studies::report::ReportArguments& arguments) {
+void add_report_command(CLI::App& app, report::ReportArguments& arguments) {
   CLI::App* report = app.add_subcommand(
       "report", "One HTML page from a run, a sweep or a study: the answer, charts, a what-if");
   report
@@ -394,10 +389,10 @@ void add_report_command(CLI::App& app, studies::report::ReportArguments& argumen
       ->add_option("--budget", arguments.budget,
                    "of a sweep: the price that a machine may have; the best within it is named")
       ->type_name("COST");
-  report->callback([&] { studies::report::report_command(arguments, print); });
+  report->callback([&] { report::report_command(arguments, print); });
 }
 
-void add_explore_command(CLI::App& app, studies::explore::ExploreArguments& arguments) {
+void add_explore_command(CLI::App& app, explore::ExploreArguments& arguments) {
   CLI::App* explore = app.add_subcommand(
       "explore",
       "A page on this computer: every setting of a machine is a control, simulated as it is moved");
@@ -414,7 +409,7 @@ void add_explore_command(CLI::App& app, studies::explore::ExploreArguments& argu
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 1e6));
   explore->add_flag("--no-browser", arguments.no_browser, "only print the address");
-  explore->callback([&] { studies::explore::explore_command(arguments, print); });
+  explore->callback([&] { explore::explore_command(arguments, print); });
 }
 
 void list_scenes() {
@@ -439,18 +434,18 @@ struct SceneArguments {
 // There is no configuration that could set a memory limit: it is the host's default.
 scenes::OpenOptions options_of(const SceneArguments& arguments) {
   scenes::OpenOptions options{{}, arguments.file};
-  options.file.size_first = studies::host::size_of_image;
+  options.file.size_first = host::size_of_image;
   options.file.memory = sim::MemoryBudget(sim::default_memory_limit());
   return options;
 }
 
 scenes::Scene open(const SceneArguments& arguments) {
-  return scenes::open_scene(arguments.source, options_of(arguments), studies::host::decode_image);
+  return scenes::open_scene(arguments.source, options_of(arguments), host::decode_image);
 }
 
 std::string scene_info(const SceneArguments& arguments) {
   const scenes::AnimatedScene scene =
-      scenes::open_animated(arguments.source, options_of(arguments), studies::host::decode_image);
+      scenes::open_animated(arguments.source, options_of(arguments), host::decode_image);
   const scenes::Scene pose = scene.asked_for(arguments.file.time, arguments.source);
   const std::string need = accel::describe_need(accel::precision_need(accel::TriangleSet(pose)));
   return scenes::describe(pose) + (need.empty() ? "" : "note: " + need + "\n") +
@@ -486,7 +481,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
     }
     scenes::Scene source = open(arguments);
     scenes::tessellate(source);
-    scenes::export_glb(source, arguments.target, studies::host::encode_png);
+    scenes::export_glb(source, arguments.target, host::encode_png);
     std::string text = "wrote " + arguments.target + "\n";
     for (const std::string& note : source.notes) {
       text += "note: " + note + "\n";
@@ -497,7 +492,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
 
 int parse_and_run(int argc, char** argv) {
   CLI::App app("marti: simulates multiprocessor ray-tracing machines", "marti");
-  app.set_version_flag("-V,--version", std::string(studies::version));
+  app.set_version_flag("-V,--version", std::string(version));
   app.require_subcommand(1);
 
   RunArguments run_arguments;
@@ -534,13 +529,13 @@ int parse_and_run(int argc, char** argv) {
       ->excludes(what_helps);
   run->callback([&] { run_command(run_arguments); });
 
-  studies::explore::ExploreArguments explore_arguments;
+  explore::ExploreArguments explore_arguments;
   add_explore_command(app, explore_arguments);
 
   StudyArguments study_arguments;
   add_study_commands(app, study_arguments);
 
-  studies::cli::SweepArguments sweep_arguments;
+  SweepArguments sweep_arguments;
   add_sweep_command(app, sweep_arguments);
 
   TraceArguments trace_arguments;
@@ -549,21 +544,21 @@ int parse_and_run(int argc, char** argv) {
   CompareArguments compare_arguments;
   add_compare_command(app, compare_arguments);
 
-  studies::report::ReportArguments report_arguments;
+  report::ReportArguments report_arguments;
   add_report_command(app, report_arguments);
 
-  studies::cli::ReferenceArguments reference_arguments;
-  studies::cli::add_reference_commands(app, reference_arguments, print);
+  ReferenceArguments reference_arguments;
+  add_reference_commands(app, reference_arguments, print);
 
   SceneArguments scene_arguments;
   add_scene_commands(app, scene_arguments);
-  studies::cli::add_examples(app);
+  add_examples(app);
 
   // The shells' completion scripts call the program this way. The words to complete may be options, which
   // CLI11 must not parse as options of this call.
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "__complete") {
-    print(studies::cli::completions(app, studies::cli::all_keys(), std::span(words).subspan(1)));
+    print(completions(app, all_keys(), std::span(words).subspan(1)));
     return done;
   }
   if (words.empty()) {
@@ -577,29 +572,27 @@ int parse_and_run(int argc, char** argv) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    throw sim::UserError(studies::cli::command_error(app, error, words));
+    throw sim::UserError(command_error(app, error, words));
   }
   return done;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   // Writing to a pipe without a reader is then an error of writing, which print() knows.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is then an error of writing, like a full disk
   // A rank that ends also ends the other ranks of its job.
   const auto end = [](int status) {
-    marti::studies::sweep::end_all_ranks(status);
+    sweep::end_all_ranks(status);
     return status;
   };
   try {
-    marti::studies::host::end_cleanly_on_signals();
-    marti::studies::host::limit_threads_to_available();
+    host::end_cleanly_on_signals();
+    host::limit_threads_to_available();
     return parse_and_run(argc, argv);
-  } catch (const marti::sim::UserError& error) {
+  } catch (const sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.
-    std::fprintf(stderr, "marti: %s\n", marti::sim::shown(error.what(), marti::sim::all_shown).c_str());
+    std::fprintf(stderr, "marti: %s\n", sim::shown(error.what(), sim::all_shown).c_str());
     return end(wrong_input);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
@@ -617,3 +610,9 @@ int main(int argc, char** argv) {
     return end(our_fault);
   }
 }
+
+}  // namespace
+
+}  // namespace marti::studies::cli
+
+int main(int argc, char** argv) { return marti::studies::cli::run_program(argc, argv); }

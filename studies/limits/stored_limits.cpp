@@ -70,7 +70,7 @@ StoredLimits::StoredLimits(const sweep::SweepReader& sweep, const std::optional<
       places_.clear();
       return;
     }
-    const explore::Settings settings = sweep.settings(point.machine);
+    const Settings settings = sweep.settings(point.machine);
     try {
       points.push_back(
           {config_of(schema, settings, sweep.file().string()), point_figures(row->counters), std::nullopt});

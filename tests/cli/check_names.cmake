@@ -6,8 +6,8 @@ cmake_minimum_required(VERSION 3.25)
 math(EXPR last "${CMAKE_ARGC} - 1")
 set(root "${CMAKE_ARGV${last}}")
 
-# These hold main() and what the run-time library calls.
-set(without_namespace "^studies/cli/(main|last_words)[.]cpp$")
+# It holds only what the run-time library calls.
+set(without_namespace "^studies/cli/last_words[.]cpp$")
 
 set(faults "")
 foreach(folder IN ITEMS sim scenes accel memory processors studies)

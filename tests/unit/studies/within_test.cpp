@@ -64,7 +64,7 @@ FrameConfig teapot(std::uint32_t side) {
 WithinAnswer answer_of(const PreparedFrame& prepared, const processors::machine::MachineConfig& machine,
                        double tolerance, double* traced = nullptr, std::uint64_t seed = 1) {
   const processors::program::RenderOptions& render = prepared.config().render;
-  SampledFrame frame = sampled_frame(prepared);
+  SampledFrame frame = estimate::sampled_frame(prepared);
   const processors::machine::PacketList packets(render.width, render.height, machine.packets);
   const WithinAnswer answer = estimate_within(frame, packets, machine, tolerance, seed);
   if (traced != nullptr && answer.estimate) {
