@@ -50,7 +50,8 @@ TEST(SchemesCommand, StructuresAreShownSideBySide) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("the same frame and machine with each"), std::string::npos);
   const std::string table = read(directory.path() / "a" / "structures.csv");
-  EXPECT_EQ(table.find("structure,tree_nodes,tree_entries,database,visits,tests,references,misses,"), 0U);
+  EXPECT_EQ(table.find("structure,tree_nodes,tree_entries,database_bytes,visits,tests,references,misses,"),
+            0U);
   EXPECT_NE(table.find("\nbvh:8_quantised,"), std::string::npos);
   // All machines on a bvh.
   const Outcome bvh = marti("study schemes " + small_schemes + only + " --set structure.kind=bvh -o " +
