@@ -129,7 +129,7 @@ class SetTags {
         store_->trees_.use(first_set_ + set, way);
       }
     }
-    // Fills the first empty way; only if there is none, a victim is replaced.
+    // Fills the first empty way; where all are full, replaces a victim.
     void replace(std::uint32_t* tags, std::uint32_t ways, std::uint32_t set, std::uint32_t tag) const {
       std::uint32_t way = 0;
       while (way < ways && tags[way] != empty) {

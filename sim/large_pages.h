@@ -68,7 +68,7 @@ class ZeroedTable {
     if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) {
       throw std::bad_alloc();
     }
-    // A large block comes from the system as it is; the C library knows that its bytes are 0.
+    // calloc gets a large block from the system, whose new pages are 0, and does not clear it again.
     block_.reset(std::calloc(count * sizeof(T) + alignment, 1));
     if (block_ == nullptr) {
       throw std::bad_alloc();

@@ -53,7 +53,7 @@ class Session {
   // What `make` returns, or what is wrong as answer() says it.
   template <class Make>
   [[nodiscard]] std::string refused_or(const Make& make) const;
-  // The configuration with these settings. Throws UserError for one that is none of the machine.
+  // The configuration with these settings. Throws UserError for a key that a machine lacks.
   [[nodiscard]] sim::Config config_with(const Settings& settings) const;
   [[nodiscard]] std::string timed(const Settings& settings, helps::Measuring what_helps,
                                   sim::WorkMeter* meter) const;
