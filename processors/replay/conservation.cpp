@@ -1,5 +1,3 @@
-#include <string>
-
 #include "processors/node/build_report.h"
 #include "processors/node/memory_system.h"
 #include "processors/replay/cache_laws.h"
@@ -16,11 +14,8 @@ sim::Ticks part(const cost::TimeDivision& time, cost::Activity activity) {
   return time[static_cast<std::size_t>(activity)];
 }
 
-void check_node(const cost::NodeStatistics& node, sim::Ticks end, std::size_t number) {
-  if (const sim::Ticks sum = cost::sum_of(node.time); sum != end) {
-    walk::require(false, "the activities of node " + std::to_string(number) + " add up to " +
-                             std::to_string(sum) + " ticks of " + std::to_string(end));
-  }
+void check_node(const cost::NodeStatistics& node, sim::Ticks end) {
+  walk::require_equal(cost::sum_of(node.time), end, "the activities of a node add up to the frame time");
   walk::require(node.steps.pixels == node.writes, "finished pixels are pixel writes");
   walk::require(node.steps.sphere_tests + node.steps.cone_tests <= node.steps.tests,
                 "tests of spheres, cylinders and cones are tests");
@@ -67,8 +62,8 @@ void check_contexts(const machine::MachineConfig& config, const MachineResult& r
 
 void check_conservation(const program::WorkLog& log, const machine::MachineConfig& config,
                         const MachineResult& result) {
-  for (std::size_t node = 0; node < result.nodes.size(); ++node) {
-    check_node(result.nodes[node], result.end, node);
+  for (const cost::NodeStatistics& node : result.nodes) {
+    check_node(node, result.end);
   }
   const cost::StepCounts steps = result.steps();
   if (config.scheme == machine::Scheme::image) {

@@ -51,14 +51,16 @@
 #include "studies/report/report_command.h"
 #include "studies/run/run_result.h"
 #include "studies/run/trace/trace.h"
-#include "studies/run/verify_plan.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/show/output.h"
+#include "studies/show/result_json.h"
+#include "studies/show/summary.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/ranks/ranks.h"
 #include "studies/tables/page_file.h"
+#include "studies/verify/verify_plan.h"
 #include "studies/version.h"
 
 namespace marti::studies::cli {
@@ -142,7 +144,8 @@ void run_command(const RunArguments& arguments) {
   }
   std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const run::RunResult result = run::run(config, std::move(options));
-  const run::PlanVerdict verdict = arguments.verify_plan ? run::verify_plan(result) : run::PlanVerdict();
+  const verify::PlanVerdict verdict =
+      arguments.verify_plan ? verify::verify_plan(result) : verify::PlanVerdict();
   shown.reset();  // before anything is printed
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
@@ -152,10 +155,10 @@ void run_command(const RunArguments& arguments) {
     written = show::write_output(result, arguments.directory);
   }
   if (arguments.json) {
-    print(written.json.empty() ? run::json_of(result) : written.json);
+    print(written.json.empty() ? show::json_of(result) : written.json);
     return;
   }
-  std::string text = run::summary_of(result) + verdict.text;
+  std::string text = show::summary_of(result) + verdict.text;
   for (const std::filesystem::path& file : written.files) {
     text += "wrote         " + file.string() + "\n";
   }

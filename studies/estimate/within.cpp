@@ -17,6 +17,8 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/record_keys.h"
 #include "studies/run/prepared_frame.h"
+#include "studies/show/result_json.h"
+#include "studies/show/summary.h"
 
 namespace marti::studies::estimate {
 
@@ -57,8 +59,9 @@ void widen(Estimate& estimate, const MachineFigures& allowance, std::uint32_t no
 }
 
 std::string exact_output(const run::RunResult& result, const std::string& reason, bool json) {
-  return json ? run::json_of(result)
-              : run::summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
+  return json
+             ? show::json_of(result)
+             : show::summary_of(result) + fmt::format("\nmethod        exact replay, no error: {}\n", reason);
 }
 
 // The share of all windows whose half-width will be `wanted`, where the windows drawn have `half_width` with

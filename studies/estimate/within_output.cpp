@@ -10,6 +10,7 @@
 
 #include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/summary.h"
 #include "studies/tables/json_table.h"
 #include "studies/tables/text_units.h"
 #include "studies/version.h"
@@ -89,7 +90,7 @@ std::string estimate_text(const run::RunResult& result, const EstimatedRun& run,
   const double share = machine.references > 0.0 ? 100.0 * value[Figure::misses] / machine.references : 0.0;
   const std::uint32_t nodes = result.machine.nodes;
   const processors::program::LogTotals& part = result.functional.totals;
-  std::string text = run::scene_summary_of(result);
+  std::string text = show::scene_summary_of(result);
   text += fmt::format("image         {} x {}, about {} rays\n", result.frame_config.render.width,
                       result.frame_config.render.height,
                       tables::grouped(static_cast<std::uint64_t>(std::llround(traced.rays))));

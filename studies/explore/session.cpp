@@ -24,6 +24,7 @@
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/report/read/read_report.h"
 #include "studies/show/key_list.h"
+#include "studies/show/result_json.h"
 
 namespace marti::studies::explore {
 
@@ -168,7 +169,7 @@ std::string Session::timed(const Settings& settings, helps::Measuring what_helps
   options.meter = meter;
   const run::RunResult result = run::run(config, std::move(options));
   explored_.add(settings, result);
-  return run::json_of(result);
+  return show::json_of(result);
 }
 
 std::string Session::answer(const Settings& settings, helps::Measuring what_helps,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,16 +94,5 @@ void refuse_several_frames(const sim::Config& config, const keys::FrameRange& fr
 
 /// The schema of `marti run`.
 [[nodiscard]] sim::Schema run_schema();
-
-/// The summary's first part: the scene and its structure, of which nothing need be traced.
-[[nodiscard]] std::string scene_summary_of(const RunResult& result);
-
-/// The printed summary.
-[[nodiscard]] std::string summary_of(const RunResult& result);
-
-/// The result for programs, as docs/result-schema.md describes it. The same run gives the same bytes.
-/// `files`: hashes (SHA-256, 64 hexadecimal digits) of the files written beside it, by name.
-[[nodiscard]] std::string json_of(const RunResult& result,
-                                  const std::map<std::string, std::string>& files = {});
 
 }  // namespace marti::studies::run

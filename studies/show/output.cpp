@@ -8,6 +8,7 @@
 #include "studies/host/signals_held.h"
 #include "studies/run/record/heat_files.h"
 #include "studies/show/count_output.h"
+#include "studies/show/result_json.h"
 #include "studies/show/working_set_output.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
@@ -65,7 +66,7 @@ WrittenRun write_output(const run::RunResult& result, const std::filesystem::pat
   if (result.timeline) {
     hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
   }
-  WrittenRun written{{}, run::json_of(result, hashes)};
+  WrittenRun written{{}, json_of(result, hashes)};
   files.write("result.json", written.json);
   if (result.timeline) {
     result.timeline->commit();

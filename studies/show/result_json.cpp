@@ -1,3 +1,5 @@
+#include "studies/show/result_json.h"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -6,7 +8,6 @@
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/plan/plan_output.h"
-#include "studies/run/run_result.h"
 #include "studies/show/build_output.h"
 #include "studies/show/cache_output.h"
 #include "studies/show/context_output.h"
@@ -201,55 +202,49 @@ Json files_json(const std::map<std::string, std::string>& files) {
 
 }  // namespace
 
-}  // namespace marti::studies::show
-
-namespace marti::studies::run {
-
-std::string json_of(const RunResult& r, const std::map<std::string, std::string>& files) {
+std::string json_of(const run::RunResult& r, const std::map<std::string, std::string>& files) {
   const processors::replay::MachineResult& timed = r.timed;
-  show::Json machine = {
-      {"scheme", processors::machine::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
-      {"clusters", r.machine.clusters},
-      {"nodes", r.machine.nodes},
-      {"node_clock_period_ps", r.machine.clock.period()},
-      {"one_node_time_ps", r.one_node.end},
-      {"bounds", show::bounds_json(r)},
-      {"what_helps", r.helps ? show::helps_json(*r.helps) : show::Json(nullptr)},
-      {"per_cluster", show::clusters_json(timed)},
-      {"per_node", show::nodes_json(timed)}};
+  Json machine = {{"scheme", processors::machine::scheme_names[static_cast<std::size_t>(r.machine.scheme)]},
+                  {"clusters", r.machine.clusters},
+                  {"nodes", r.machine.nodes},
+                  {"node_clock_period_ps", r.machine.clock.period()},
+                  {"one_node_time_ps", r.one_node.end},
+                  {"bounds", bounds_json(r)},
+                  {"what_helps", r.helps ? helps_json(*r.helps) : Json(nullptr)},
+                  {"per_cluster", clusters_json(timed)},
+                  {"per_node", nodes_json(timed)}};
   if (timed.build.sharing != processors::machine::Sharing::given) {
-    machine["build"] = show::build_json(timed.build, timed.nodes.size() <= show::most_listed);
+    machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
   }
   if (r.machine.scheme != processors::machine::Scheme::image) {
-    machine["flow"] = show::flow_json(r.machine, timed, timed.nodes.size() <= show::most_listed);
+    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
   }
   if (r.machine.l2.sharing != processors::machine::SecondLevel::none) {
-    machine["l2"] = show::second_level_json(r.machine, timed, timed.l2.caches.size() <= show::most_listed);
+    machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
   }
   if (r.machine.count.any()) {
-    machine["counts"] = show::counts_json(timed.counts);
+    machine["counts"] = counts_json(timed.counts);
   }
   if (r.working_set) {
-    machine["working_set"] = show::working_set_json(*r.working_set);
+    machine["working_set"] = working_set_json(*r.working_set);
   }
-  show::add_critical_path(r, timed.nodes.size() <= show::most_listed, machine);
+  add_critical_path(r, timed.nodes.size() <= most_listed, machine);
   if (!timed.contexts.nodes.empty()) {
-    machine["contexts"] =
-        show::context_json(r.machine, timed.contexts, timed.nodes.size() <= show::most_listed);
+    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
   }
-  show::Json result = {{"marti", {{"version", version}, {"schema", show::schema_version}}},
-                       {"config", keys::config_json(r.config_name, r.values)},
-                       {"figures", show::figures_json(r)},
-                       {"scene", show::scene_json(r)},
-                       {"structure", show::structure_json(r)},
-                       {"voxel_cut", show::voxel_json(r)},
-                       {"plan", plan_json(r.plan)},
-                       {"machine", machine}};
+  Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
+                 {"config", keys::config_json(r.config_name, r.values)},
+                 {"figures", figures_json(r)},
+                 {"scene", scene_json(r)},
+                 {"structure", structure_json(r)},
+                 {"voxel_cut", voxel_json(r)},
+                 {"plan", run::plan_json(r.plan)},
+                 {"machine", machine}};
   if (r.heat_map) {
-    result["heat_maps"] = show::heat_maps_json(*r.heat_map);
+    result["heat_maps"] = heat_maps_json(*r.heat_map);
   }
-  result["files"] = show::files_json(files);
+  result["files"] = files_json(files);
   return tables::json_text(result);
 }
 
-}  // namespace marti::studies::run
+}  // namespace marti::studies::show

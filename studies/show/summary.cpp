@@ -1,3 +1,5 @@
+#include "studies/show/summary.h"
+
 #include <fmt/format.h>
 
 #include <iterator>
@@ -7,7 +9,6 @@
 #include "sim/statistics.h"
 #include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
-#include "studies/run/run_result.h"
 #include "studies/show/build_output.h"
 #include "studies/show/cache_output.h"
 #include "studies/show/context_output.h"
@@ -244,43 +245,39 @@ void memory_lines(Lines out, const run::RunResult& r) {
 
 }  // namespace
 
-}  // namespace marti::studies::show
-
-namespace marti::studies::run {
-
-std::string scene_summary_of(const RunResult& r) {
+std::string scene_summary_of(const run::RunResult& r) {
   std::string text;
-  show::scene_lines(std::back_inserter(text), r);
+  scene_lines(std::back_inserter(text), r);
   return text;
 }
 
-std::string summary_of(const RunResult& r) {
+std::string summary_of(const run::RunResult& r) {
   std::string text = fmt::format("answer        {} a frame{}\n\n", tables::seconds(r.timed.end),
                                  r.helps && r.helps->measured ? "; " + r.helps->sentence : std::string());
   text += scene_summary_of(r);
-  const show::Lines out = std::back_inserter(text);
-  show::image_lines(out, r);
-  show::voxel_lines(out, r);
-  text += plan_lines(r.plan);
-  show::machine_lines(out, r);
-  text += show::loss_lines(r);
-  show::time_lines(out, r);
-  show::memory_lines(out, r);
-  text += show::energy_lines(r);
-  text += show::counts_lines(r);
+  const Lines out = std::back_inserter(text);
+  image_lines(out, r);
+  voxel_lines(out, r);
+  text += run::plan_lines(r.plan);
+  machine_lines(out, r);
+  text += loss_lines(r);
+  time_lines(out, r);
+  memory_lines(out, r);
+  text += energy_lines(r);
+  text += counts_lines(r);
   if (r.working_set) {
-    text += show::working_set_lines(*r.working_set);
+    text += working_set_lines(*r.working_set);
   }
-  text += show::critical_path_lines(r);
-  text += show::context_lines(r);
-  text += show::build_lines(r);
-  text += show::flow_lines(r);
-  text += show::bound_lines(r);
-  text += show::record_lines(r);
+  text += critical_path_lines(r);
+  text += context_lines(r);
+  text += build_lines(r);
+  text += flow_lines(r);
+  text += bound_lines(r);
+  text += record_lines(r);
   if (r.helps) {
-    text += show::helps_lines(*r.helps);
+    text += helps_lines(*r.helps);
   }
   return text;
 }
 
-}  // namespace marti::studies::run
+}  // namespace marti::studies::show

@@ -12,6 +12,8 @@
 #include "processors/replay/bounds.h"
 #include "studies/run/run_result.h"
 #include "studies/show/output.h"
+#include "studies/show/result_json.h"
+#include "studies/show/summary.h"
 #include "studies/stability/machines.h"
 
 namespace marti::studies::stability {
@@ -67,7 +69,7 @@ CaseOutcome printed(const CaseSize& size) {
   for (const processors::cost::NodeStatistics& node : result.timed.nodes) {
     idle += processors::replay::had_work(node) ? 0U : 1U;
   }
-  for (std::string printed : {run::summary_of(result), run::json_of(result)}) {
+  for (std::string printed : {show::summary_of(result), show::json_of(result)}) {
     std::transform(printed.begin(), printed.end(), printed.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (const char* word : {" nan", "-nan", ":nan", " inf ", "-inf", ":inf", "(nan", "nan%"}) {

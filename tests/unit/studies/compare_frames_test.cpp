@@ -18,6 +18,7 @@
 #include "studies/compare/frames.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/run/run_result.h"
+#include "studies/show/result_json.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/unit/studies/sweep_parts.h"
@@ -41,7 +42,7 @@ const std::string small_scene =
 fs::path write_run(const fs::path& directory, const std::vector<std::string>& assignments) {
   sim::Config config = sim::Config::from_text(run_schema(), small_scene, "test", assignments);
   fs::create_directories(directory);
-  std::ofstream(directory / "result.json", std::ios::binary) << json_of(run::run(config));
+  std::ofstream(directory / "result.json", std::ios::binary) << show::json_of(run::run(config));
   return directory;
 }
 

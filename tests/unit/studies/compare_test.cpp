@@ -19,6 +19,7 @@
 #include "sim/error.h"
 #include "studies/compare/differences.h"
 #include "studies/run/run_result.h"
+#include "studies/show/result_json.h"
 #include "studies/sweep/store/point_result.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "tests/support/temporary_directory.h"
@@ -70,7 +71,7 @@ class ComparedMachines : public testing::TestWithParam<std::vector<std::string>>
 TEST_P(ComparedMachines, AreEqualInARunAndInASweep) {
   const TemporaryDirectory directory;
   const RunResult run = run_of(GetParam());
-  write(directory.path() / "run" / "result.json", json_of(run));
+  write(directory.path() / "run" / "result.json", show::json_of(run));
   write_sweep(directory.path() / "sweep" / "results.sqlite", run);
   const std::string a = (directory.path() / "run").string();
   const std::string b = (directory.path() / "sweep").string() + ":0";
@@ -266,7 +267,7 @@ TEST(Compare, AResultWithASweepIsItsComparisonWithEachPoint) {
   }
   expect_comparison_of_each_point(sweep + ":2", sweep, 12, timed, true);
   const fs::path run = directory.path() / "run" / "result.json";
-  write(run, json_of(run_of({"machine.nodes=2"})));
+  write(run, show::json_of(run_of({"machine.nodes=2"})));
   expect_comparison_of_each_point(run.string(), sweep, 12, timed, false);
 
   const std::string text = compare_results(sweep + ":2", sweep);
@@ -292,7 +293,7 @@ TEST(Compare, RefusesASweepOrAResultWithoutFrameTimes) {
   fs::create_directories(store.parent_path());
   SweepStore(store, test::made_plan(3)).close();
   const std::string run = (directory.path() / "run" / "result.json").string();
-  const std::string good = json_of(run_of({}));
+  const std::string good = show::json_of(run_of({}));
   const auto message = [&] { return user_error_of([&] { (void)compare_results(run, store.string()); }); };
   write(run, good);
   EXPECT_NE(message().find("no point of this sweep has been run yet"), std::string::npos) << message();
@@ -331,7 +332,7 @@ TEST(Compare, ABrokenPointIsOfASweep) {
 TEST(Compare, RefusesWhatIsNoResult) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "result.json";
-  const std::string good = json_of(run_of({}));
+  const std::string good = show::json_of(run_of({}));
   const auto refused = [&](const std::string& text, const char* reason) {
     write(file, text);
     const std::string message = user_error_of([&] { (void)compare_results(file.string(), file.string()); });
@@ -371,7 +372,7 @@ TEST(Compare, SaysWhatItExpects) {
   EXPECT_NE(message(place, place).find("neither result.json nor results.sqlite"), std::string::npos);
   const RunResult run = run_of({});
   write_sweep(directory.path() / "sweep" / "results.sqlite", run);
-  write(directory.path() / "run" / "result.json", json_of(run));
+  write(directory.path() / "run" / "result.json", show::json_of(run));
   EXPECT_NE(message(place + "/sweep:1", place + "/run").find("no such point; the sweep has 1"),
             std::string::npos);
   EXPECT_NE(message(place + "/sweep:-1", place + "/run").find("no such point"), std::string::npos);

@@ -17,6 +17,7 @@
 #include "studies/keys/price_keys.h"
 #include "studies/keys/setting_value.h"
 #include "studies/run/run_result.h"
+#include "studies/show/result_json.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -59,7 +60,7 @@ class Explored : public testing::Test {
     RunOptions options;
     options.what_helps = what_helps;
     options.prices = read_given_prices(config);
-    return json_of(run::run(config, std::move(options)));
+    return show::json_of(run::run(config, std::move(options)));
   }
 
   // The refusal's key, or "accepted".
@@ -192,7 +193,7 @@ TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
   sim::Config config = sim::Config::from_file(schema, file_, all);
   RunOptions options;
   options.prices = read_given_prices(config);
-  EXPECT_EQ(session.answer(settings, Measuring::none), json_of(run::run(config, std::move(options))));
+  EXPECT_EQ(session.answer(settings, Measuring::none), show::json_of(run::run(config, std::move(options))));
 }
 
 TEST_F(Explored, SettingsComeBehindThoseOfTheCommand) {

@@ -13,6 +13,7 @@
 #include "scenes/procedural.h"
 #include "sim/files.h"
 #include "studies/run/run_result.h"
+#include "studies/show/summary.h"
 
 namespace marti::studies {
 
@@ -83,7 +84,8 @@ TEST(Run, EveryShippedConfigurationCanBeRun) {
     if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]")) {
       ++configurations;
       sim::Config config = sim::Config::from_file(run_schema(), entry.path(), small);
-      const std::string summary = summary_of(run::run(config, {.what_helps = Measuring::within_budget}));
+      const std::string summary =
+          show::summary_of(run::run(config, {.what_helps = Measuring::within_budget}));
       for (const char* line : {"frame time", "speed-up", "hit ratio", "what helps"}) {
         EXPECT_NE(summary.find(line), std::string::npos) << entry.path() << " lacks " << line;
       }

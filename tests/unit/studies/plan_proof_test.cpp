@@ -13,7 +13,7 @@
 #include "scenes/procedural.h"
 #include "studies/host/image_file.h"
 #include "studies/run/plan/make_plan.h"
-#include "studies/run/verify_plan.h"
+#include "studies/verify/verify_plan.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/scenes/gltf_file.h"
@@ -24,6 +24,7 @@ namespace marti::studies {
 using namespace host;
 using namespace keys;
 using namespace run;
+using namespace verify;
 
 namespace {
 

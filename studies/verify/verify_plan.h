@@ -8,7 +8,7 @@
 #include "processors/program/work_log.h"
 #include "studies/run/run_result.h"
 
-namespace marti::studies::run {
+namespace marti::studies::verify {
 
 struct PlanVerdict {
   bool holds = true;
@@ -20,7 +20,7 @@ struct PlanVerdict {
 /// every figure of the machine. Where shadow rays were left out that no light could show, the log without
 /// them must be equal, and the machine's figures may differ, because its rays do. If a part of a file that
 /// was not read is broken, the verdict says that there is nothing to compare with.
-[[nodiscard]] PlanVerdict verify_plan(const RunResult& result);
+[[nodiscard]] PlanVerdict verify_plan(const run::RunResult& result);
 
 /// The log without the shadow rays and the lights at points of these materials (by index; averaged materials
 /// have no entry).
@@ -34,4 +34,4 @@ struct PlanVerdict {
 [[nodiscard]] std::string difference_of(const processors::program::WorkLog& a,
                                         const processors::program::WorkLog& b);
 
-}  // namespace marti::studies::run
+}  // namespace marti::studies::verify

@@ -1,4 +1,4 @@
-#include "studies/run/verify_plan.h"
+#include "studies/verify/verify_plan.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,9 @@
 #include "sim/error.h"
 #include "studies/host/image_file.h"
 #include "studies/run/plan/make_plan.h"
+#include "studies/show/result_json.h"
 
-namespace marti::studies::run {
+namespace marti::studies::verify {
 
 namespace {
 
@@ -66,7 +67,7 @@ std::string difference_of_images(const processors::program::Image& a, const proc
 
 // What differs between the planned frame and one with more items kept. `unlit`: the materials at which only
 // the latter may have shadow rays.
-std::string difference_of_frames(const FunctionalRun& planned, const FunctionalRun& kept,
+std::string difference_of_frames(const run::FunctionalRun& planned, const run::FunctionalRun& kept,
                                  const std::vector<bool>* unlit) {
   if (std::string pixels = difference_of_images(planned.frame.image, kept.frame.image); !pixels.empty()) {
     return pixels;
@@ -78,8 +79,8 @@ std::string difference_of_frames(const FunctionalRun& planned, const FunctionalR
                           : difference_of(*planned.frame.log, without_shadows_at(*unlit, *kept.frame.log));
 }
 
-std::string machine_of(const RunResult& result) {
-  nlohmann::ordered_json machine = nlohmann::ordered_json::parse(json_of(result))["machine"];
+std::string machine_of(const run::RunResult& result) {
+  nlohmann::ordered_json machine = nlohmann::ordered_json::parse(show::json_of(result))["machine"];
   // Both are found once, not by the runs that are compared with the first.
   machine.erase("what_helps");
   machine.erase("critical_path");
@@ -88,7 +89,7 @@ std::string machine_of(const RunResult& result) {
 
 class Verifier {
  public:
-  explicit Verifier(const RunResult& result) : result_(result) {
+  explicit Verifier(const run::RunResult& result) : result_(result) {
     const keys::FrameConfig& frame = result.frame_config;
     scenes::OpenOptions open = frame.open;
     open.file.size_only = host::size_of_image;
@@ -96,12 +97,12 @@ class Verifier {
   }
 
   PlanVerdict verdict() {
-    for (const PlanEntry& entry : result_.functional.plan.entries) {
-      if (entry.decision == PlanDecision::left_out) {
-        attempt(name_of(entry.item), [&] { check(entry.item); });
+    for (const run::PlanEntry& entry : result_.functional.plan.entries) {
+      if (entry.decision == run::PlanDecision::left_out) {
+        attempt(run::name_of(entry.item), [&] { check(entry.item); });
       }
     }
-    for (const PlanItem item : {PlanItem::contention, PlanItem::cache}) {
+    for (const run::PlanItem item : {run::PlanItem::contention, run::PlanItem::cache}) {
       check_machine(item);
     }
     attempt("all kept", [&] { check_all(); });
@@ -126,15 +127,15 @@ class Verifier {
     }
   }
 
-  void check(PlanItem item) {
+  void check(run::PlanItem item) {
     keys::FrameConfig config = result_.frame_config;
     config.keep.keep(item);
-    const FunctionalRun kept = run_functional(config);
-    const bool shadows = item == PlanItem::shadow_rays;
+    const run::FunctionalRun kept = run::run_functional(config);
+    const bool shadows = item == run::PlanItem::shadow_rays;
     const std::string difference =
         difference_of_frames(result_.functional, kept, shadows ? &unlit_ : nullptr);
     const std::uint64_t more = kept.frame.rays.all() - result_.functional.frame.rays.all();
-    say(name_of(item), difference,
+    say(run::name_of(item), difference,
         more == 0 ? "same image, same hits, same work log"
                   : fmt::format("same image; without the {} shadow rays more that are sent when it is kept, "
                                 "the same work log",
@@ -142,22 +143,22 @@ class Verifier {
   }
 
   // Items of the machine do not change the frame, so it is not rendered again.
-  void check_machine(PlanItem item) {
+  void check_machine(run::PlanItem item) {
     const auto& entries = result_.plan.entries;
-    const bool left_out = std::any_of(entries.begin(), entries.end(), [&](const PlanEntry& entry) {
-      return entry.item == item && entry.decision == PlanDecision::left_out;
+    const bool left_out = std::any_of(entries.begin(), entries.end(), [&](const run::PlanEntry& entry) {
+      return entry.item == item && entry.decision == run::PlanDecision::left_out;
     });
     if (left_out) {
-      KeptItems keep = result_.frame_config.keep;
+      run::KeptItems keep = result_.frame_config.keep;
       keep.keep(item);
-      const bool same = machine_of(result_) == machine_of(time_again(result_, keep));
-      say(name_of(item), same ? "" : "figures of the machine differ",
+      const bool same = machine_of(result_) == machine_of(run::time_again(result_, keep));
+      say(run::name_of(item), same ? "" : "figures of the machine differ",
           "every figure of the machine is the same");
     }
   }
 
   void check_all() {
-    const RunResult all = run_again(result_, KeptItems::all());
+    const run::RunResult all = run::run_again(result_, run::KeptItems::all());
     const bool same_rays = all.functional.frame.hit_hash == result_.functional.frame.hit_hash;
     std::string difference =
         difference_of_frames(result_.functional, all.functional, same_rays ? nullptr : &unlit_);
@@ -170,7 +171,7 @@ class Verifier {
                     "other rays and are not compared");
   }
 
-  const RunResult& result_;
+  const run::RunResult& result_;
   std::vector<bool> unlit_;
   PlanVerdict verdict_;
 };
@@ -213,6 +214,6 @@ std::string difference_of(const processors::program::WorkLog& a, const processor
   return "";
 }
 
-PlanVerdict verify_plan(const RunResult& result) { return Verifier(result).verdict(); }
+PlanVerdict verify_plan(const run::RunResult& result) { return Verifier(result).verdict(); }
 
-}  // namespace marti::studies::run
+}  // namespace marti::studies::verify
