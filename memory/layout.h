@@ -35,6 +35,7 @@ struct LayoutConfig {
   NodeOrder node_order = NodeOrder::breadth_first;
   std::uint32_t treelet_bytes = 4096;  ///< the node records of a treelet take at most so many
 
+  friend bool operator==(const LayoutConfig&, const LayoutConfig&) = default;
   /// Bytes from one node record to the next; record_alignment must be valid.
   [[nodiscard]] std::uint64_t node_stride() const {
     return (std::uint64_t{node_bytes} + record_alignment - 1) / record_alignment * record_alignment;

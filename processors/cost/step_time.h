@@ -23,6 +23,7 @@ struct StepTicks {
   sim::Ticks pass = 0;
   sim::Ticks pixel = 0;
   sim::Ticks hit = 0;
+  friend bool operator==(const StepTicks&, const StepTicks&) = default;
 };
 
 /// The times on this machine of the steps of the traversal that made `log`.

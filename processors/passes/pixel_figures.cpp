@@ -12,17 +12,6 @@ namespace marti::processors::passes {
 
 namespace {
 
-struct HitCaches {
-  static constexpr bool present = true;
-  static constexpr bool by_kind = false;
-  struct View {
-    [[gnu::always_inline]] static bool access(memory::RecordKind /*kind*/, std::uint32_t /*line*/) {
-      return true;
-    }
-  };
-  [[nodiscard]] static View view(std::uint32_t /*node*/) { return {}; }
-};
-
 // Walks one pixel to its end and returns the time that its steps and hits take.
 template <class Walker>
 sim::Ticks walk(Walker& walker, const walk::PixelPlace& pixel, cost::NodeStatistics& statistics) {
@@ -38,43 +27,41 @@ sim::Ticks walk(Walker& walker, const walk::PixelPlace& pixel, cost::NodeStatist
 }
 
 template <class Caches>
-void count_misses(const walk::ReplayInput& input, Caches caches, std::span<const walk::PixelPlace> pixels,
-                  std::vector<PixelFigures>& figures) {
+std::vector<PixelFigures> walk_all(const walk::ReplayInput& input, Caches caches,
+                                   std::span<const walk::PixelPlace> pixels) {
   walk::LogWalker<Caches> walker(input, std::move(caches));
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    for (std::int64_t PixelFigures::*const misses : {&PixelFigures::misses, &PixelFigures::misses_again}) {
-      cost::NodeStatistics statistics;
-      (void)walk(walker, pixels[i], statistics);
-      figures[i].*misses = statistics.references.all_misses();
-    }
+  const sim::Ticks hit = walker.ticks().hit;
+  std::vector<PixelFigures> figures;
+  figures.reserve(pixels.size());
+  for (const walk::PixelPlace& pixel : pixels) {
+    cost::NodeStatistics first;
+    cost::NodeStatistics again;
+    const sim::Ticks time = walk(walker, pixel, first);
+    (void)walk(walker, pixel, again);
+    const std::int64_t misses = first.references.all_misses();
+    figures.push_back(
+        {sim::add_ticks(time, sim::multiply_ticks(hit, misses)), misses, again.references.all_misses()});
   }
+  return figures;
 }
 
 }  // namespace
 
 std::vector<PixelFigures> pixel_figures(const program::WorkLog& log, const machine::MachineConfig& config,
-                                        std::span<const walk::PixelPlace> pixels) {
+                                        std::span<const walk::PixelPlace> pixels, walk::KeptVisits* visits) {
   std::optional<walk::TreePlan> given;
   const machine::MachineConfig one_node = machine::one_node_of(config);
   const memory::Layout layout = walk::layout_of(log, one_node, given);
   sim::ensure(!given, "pixels are walked alone through a given tree");
   const machine::PacketList packets(log.width, log.height, config.packets);
   const std::vector<std::uint32_t> rank = walk::node_ranks(log, one_node);
-  // Few pixels are walked, so planning all visits of the tree would take longer than walking without a plan.
-  constexpr bool step_by_step = true;
-  const walk::ReplayInput input = {log, one_node, layout, packets, rank, step_by_step};
-  std::vector<PixelFigures> figures(pixels.size());
-  walk::LogWalker<HitCaches> walker(input, HitCaches());
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    cost::NodeStatistics unused;
-    figures[i].hit_time = walk(walker, pixels[i], unused);
-  }
-  if (config.cache.organisation == machine::CacheOrganisation::none) {
-    count_misses(input, walk::NoCaches(), pixels, figures);
-  } else {
-    count_misses(input, walk::AnyCaches(one_node), pixels, figures);
-  }
-  return figures;
+  walk::ReplayInput input = {log, one_node, layout, packets, rank};
+  input.visits = visits;
+  // To plan all visits of the tree for few pixels alone would take longer than walking without a plan.
+  input.step_by_step = visits == nullptr;
+  return config.cache.organisation == machine::CacheOrganisation::none
+             ? walk_all(input, walk::NoCaches(), pixels)
+             : walk_all(input, walk::AnyCaches(one_node), pixels);
 }
 
 }  // namespace marti::processors::passes

@@ -8,6 +8,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/kept_visits.h"
 #include "processors/walk/observer.h"
 #include "sim/time.h"
 
@@ -20,9 +21,11 @@ struct PixelFigures {
 };
 
 /// One for each of `pixels`, which one node walks in their order, each twice. `config` must have a given
-/// tree, one context and no second level of caches.
+/// tree, one context and no second level of caches. `visits`: the plan that a replay of this machine will
+/// walk, too; null: there will be none.
 [[nodiscard]] std::vector<PixelFigures> pixel_figures(const program::WorkLog& log,
                                                       const machine::MachineConfig& config,
-                                                      std::span<const walk::PixelPlace> pixels);
+                                                      std::span<const walk::PixelPlace> pixels,
+                                                      walk::KeptVisits* visits = nullptr);
 
 }  // namespace marti::processors::passes

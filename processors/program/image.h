@@ -2,16 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include <glm/vec3.hpp>
+
+#include "sim/large_pages.h"
 
 namespace marti::processors::program {
 
 struct Image {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<glm::vec3> pixels;  ///< width * height
+  sim::LargeVector<glm::vec3> pixels;  ///< width * height
 
   [[nodiscard]] const glm::vec3& at(std::uint32_t x, std::uint32_t y) const {
     return pixels[static_cast<std::size_t>(y) * width + x];

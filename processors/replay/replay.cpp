@@ -132,6 +132,7 @@ MachineResult replay_image(const program::WorkLog& log, const machine::MachineCo
                              options.sample,
                              &all_packets};
   input.causes = options.path;
+  input.visits = plan ? nullptr : options.visits;
   const walk::LeftOut left_out = leave_out(options, input);
   if (options.stripped != nullptr) {
     sim::ensure(options.stripped->fits(log) && !options.step_by_step && !options.with_contexts &&

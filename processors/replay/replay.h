@@ -26,6 +26,7 @@ namespace marti::processors::path {
 class PathRecorder;
 }  // namespace marti::processors::path
 namespace marti::processors::walk {
+class KeptVisits;
 class Observer;
 class StrippedLog;
 }  // namespace marti::processors::walk
@@ -96,6 +97,9 @@ struct ReplayOptions {
   const walk::PacketSample* sample = nullptr;
   bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
+  /// Planned visits of the last of several replays of one tree that is given, one after the other; null: none
+  /// are kept. Same result.
+  walk::KeptVisits* visits = nullptr;
   /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
   /// `stripped` or `sample`.
   path::PathRecorder* path = nullptr;

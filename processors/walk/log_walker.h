@@ -15,6 +15,7 @@
 #include "processors/program/work_log.h"
 #include "processors/walk/behind_cache.h"
 #include "processors/walk/cache_counting.h"
+#include "processors/walk/kept_visits.h"
 #include "processors/walk/lines_under_way.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/node_caches.h"
@@ -32,7 +33,7 @@ class LogWalker {
  public:
   static constexpr bool steps_singly = true;  ///< can stop after every reference
 
-  /// `plan`: what visits_of() has returned; null where no walker shares it.
+  /// `plan`: what visits_of() (kept_visits.h) has returned; null: taken from input.visits, or planned.
   LogWalker(const ReplayInput& input, Caches caches, std::shared_ptr<const VisitPlan> plan = nullptr)
       : input_(input),
         caches_(std::move(caches)),
@@ -47,17 +48,11 @@ class LogWalker {
         behind_(input),
         passes_misses_on_(!behind_.only_reads()) {
     if (Caches::present && !counted && !guarded && !input.step_by_step && input.causes == nullptr) {
-      plan_ = plan != nullptr ? std::move(plan) : visits_of(input);
+      plan_ = plan != nullptr           ? std::move(plan)
+              : input.visits == nullptr ? visits_of(input)
+                                        : input.visits->of(input);
       plan_limit_ = plan_->empty() ? 0 : 2U << program::operand_bits;
     }
-  }
-
-  /// The visits that walkers of this input plan. Walkers of several threads can share them.
-  [[nodiscard]] static std::shared_ptr<const VisitPlan> visits_of(const ReplayInput& input) {
-    return std::make_shared<const VisitPlan>(
-        plan_visits(input.log, input.layout, input.node_rank,
-                    static_cast<unsigned>(std::countr_zero(input.config.reference_bytes())),
-                    cost::step_ticks(input.config, input.log)));
   }
 
   [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }

@@ -16,6 +16,7 @@
 namespace marti::processors::walk {
 
 class CauseObserver;
+class KeptVisits;
 class Observer;
 class StrippedLog;
 
@@ -40,6 +41,8 @@ struct ReplayInput {
   std::optional<sim::Ticks> own_reads{};
   /// Null: nobody asks for causes. Else there is an observer, too.
   CauseObserver* causes = nullptr;
+  /// Null: visits are planned for this replay alone. Else the tree is given.
+  KeptVisits* visits = nullptr;
 };
 
 }  // namespace marti::processors::walk

@@ -11,6 +11,7 @@
 
 #include "memory/recency_lists.h"
 #include "processors/machine/packets.h"
+#include "processors/walk/kept_visits.h"
 #include "processors/walk/log_walker.h"
 #include "processors/walk/node_caches.h"
 #include "processors/walk/record_places.h"
@@ -326,7 +327,7 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program:
     std::atomic<std::int64_t> left = static_cast<std::int64_t>(
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
     const auto strip_with = [&]<class Caches>() {
-      const std::shared_ptr<const VisitPlan> plan = LogWalker<Caches>::visits_of(input);
+      const std::shared_ptr<const VisitPlan> plan = visits_of(input);
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
           [&] { return Stripper<Caches>(input, ways, plan, left, meter); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {

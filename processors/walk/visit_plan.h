@@ -6,12 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "accel/quadric_shape.h"
 #include "memory/layout.h"
 #include "processors/cost/step_time.h"
 #include "processors/program/work_log.h"
+#include "sim/large_pages.h"
 
 namespace marti::processors::walk {
 
@@ -79,9 +79,9 @@ inline constexpr unsigned label_bits = 29;
 }
 
 struct VisitPlan {
-  std::vector<Visit> visits;          ///< one for each tree node
-  std::vector<std::uint32_t> lines;   ///< line numbers, visit by visit
-  std::vector<std::uint32_t> labels;  ///< one for each line
+  sim::LargeVector<Visit> visits;          ///< one for each tree node
+  sim::LargeVector<std::uint32_t> lines;   ///< line numbers, visit by visit
+  sim::LargeVector<std::uint32_t> labels;  ///< one for each line
 
   [[nodiscard]] bool empty() const { return visits.empty(); }
 };

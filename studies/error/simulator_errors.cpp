@@ -146,24 +146,26 @@ std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
 }
 
 std::vector<estimate::MeasuredError> measured_errors_of(const SimulatorStudy& study) {
-  std::array<std::vector<Answer>, estimate::figure_count> answers;
+  using Answers = std::array<std::vector<Answer>, estimate::figure_count>;
+  std::array<Answers, estimate::sample_sizes.size()> answers;
   for (std::size_t i = 0; i < estimate::figure_count; ++i) {
     for (std::size_t method = 0; method < estimate::simulator_methods().size(); ++method) {
-      if (estimate::simulator_methods()[method].kind == estimate::MethodKind::sampled) {
+      const std::uint64_t windows = 2 * estimate::simulator_methods()[method].strata;
+      if (estimate::simulator_methods()[method].kind == estimate::MethodKind::sampled &&
+          windows >= estimate::least_windows) {
         for (const Answer& answer : answers_of(study, method, static_cast<estimate::Figure>(i))) {
-          if (2 * estimate::simulator_methods()[method].strata >=
-              estimate::least_windows[answer.load_class]) {
-            answers[i].push_back(answer);
-          }
+          answers[estimate::size_class_of(windows)][i].push_back(answer);
         }
       }
     }
   }
   std::vector<estimate::MeasuredError> errors;
-  for (std::size_t load = 0; load < estimate::load_classes.size(); ++load) {
-    estimate::MeasuredError error{estimate::load_classes[load], 0, 1.0, {}};
+  for (std::size_t row = 0; row < estimate::load_classes.size() * answers.size(); ++row) {
+    const std::size_t load = row / answers.size();
+    const std::size_t size = row % answers.size();
+    estimate::MeasuredError error{estimate::load_classes[load], estimate::sample_sizes[size], 0, 1.0, {}};
     for (std::size_t i = 0; i < estimate::figure_count; ++i) {
-      std::vector<Answer> of_class = answers[i];  // coverage is counted of the class alone
+      std::vector<Answer> of_class = answers[size][i];  // coverage is counted of the class alone
       std::erase_if(of_class, [&](const Answer& answer) { return answer.load_class != load; });
       if (const std::optional<double> allowance = allowance_of(study, of_class, load, std::nullopt)) {
         error.allowance[static_cast<estimate::Figure>(i)] = *allowance;

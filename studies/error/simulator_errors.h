@@ -38,8 +38,8 @@ struct MethodErrors {
 /// a number of nodes by ("Speedup versus efficiency in parallel systems", IEEE Trans. Computers 38(3), 1989).
 [[nodiscard]] std::vector<MethodErrors> errors_of(const SimulatorStudy& study);
 
-/// What `marti run --within` rests on: the errors of samples of all sizes that it takes. Classes of load that
-/// no case is of are missing.
+/// What `marti run --within` rests on: the errors of samples of all sizes that it takes. Classes that no
+/// case is of are missing.
 [[nodiscard]] std::vector<estimate::MeasuredError> measured_errors_of(const SimulatorStudy& study);
 
 }  // namespace marti::studies::error

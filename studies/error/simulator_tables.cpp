@@ -278,6 +278,8 @@ tables::Table measured_table(const SimulatorStudy& study) {
       {"version", tables::ColumnType::integer, "", "of the list of methods"},
       {"use_to", tables::ColumnType::real, "fraction",
        "machines whose interconnect is busy up to this share of the frame, more than the class before"},
+      {"windows", tables::ColumnType::integer, "1",
+       "samples of at least so many windows, fewer than the next"},
       {"cases", tables::ColumnType::integer, "1", "samples measured"},
       {"covered", tables::ColumnType::real, "fraction",
        "share of them in intervals widened by what the other scenes say, of the figure of which it is "
@@ -290,6 +292,7 @@ tables::Table measured_table(const SimulatorStudy& study) {
                       std::move(columns));
   for (const estimate::MeasuredError& error : measured_errors_of(study)) {
     std::vector<tables::Cell> row = {std::int64_t{estimate::methods_version}, error.use_to,
+                                     static_cast<std::int64_t>(error.windows),
                                      tables::count_cell(error.cases), error.covered};
     for (std::size_t i = 0; i < estimate::figure_count; ++i) {
       row.emplace_back(error.allowance[static_cast<estimate::Figure>(i)]);

@@ -14,7 +14,7 @@ namespace marti::studies::estimate {
 
 namespace {
 
-constexpr std::size_t first_figure = 4;
+constexpr std::size_t first_figure = 5;
 constexpr std::size_t column_count = first_figure + figure_count;
 
 [[noreturn]] void fail(const std::string& reason) {
@@ -80,36 +80,45 @@ std::size_t load_class_of(double use) {
                                load_classes.size() - 1);
 }
 
-std::vector<MeasuredError> parse_measured_errors(std::string_view csv) {
+std::size_t size_class_of(std::uint64_t windows) {
+  const auto* const above = std::upper_bound(sample_sizes.begin(), sample_sizes.end(), windows);
+  sim::ensure(above != sample_sizes.begin(), "no errors are known of so few windows");
+  return static_cast<std::size_t>(above - sample_sizes.begin()) - 1;
+}
+
+MeasuredErrors parse_measured_errors(std::string_view csv) {
   const std::array<std::string_view, column_count> header = cells_of(take_line(csv));
-  constexpr std::array<std::string_view, first_figure> first = {"version", "use_to", "cases", "covered"};
+  constexpr std::array<std::string_view, first_figure> first = {"version", "use_to", "windows", "cases",
+                                                                "covered"};
   for (std::size_t i = 0; i < column_count; ++i) {
     const std::string_view wanted = i < first_figure ? first[i] : figure_names[i - first_figure];
     if (header[i] != wanted) {
       fail("a column \"" + std::string(header[i]) + "\" where \"" + std::string(wanted) + "\" should be");
     }
   }
-  std::vector<MeasuredError> errors;
-  while (!csv.empty()) {
+  MeasuredErrors errors;
+  for (std::size_t row = 0; row < load_classes.size() * sample_sizes.size(); ++row) {
+    const std::size_t load = row / sample_sizes.size();
+    const std::size_t size = row % sample_sizes.size();
     const std::array<std::string_view, column_count> cells = cells_of(take_line(csv));
     if (whole_number_of(cells[0]) != methods_version) {
       fail("version " + std::string(cells[0]) + ", but the program's methods are of version " +
            std::to_string(methods_version));
     }
-    MeasuredError error;
+    MeasuredError& error = errors[load][size];
     error.use_to = number_of(cells[1]);
-    error.cases = whole_number_of(cells[2]);
-    error.covered = number_of(cells[3]);
-    if (errors.size() == load_classes.size() || error.use_to != load_classes[errors.size()]) {
-      fail("a class of load that is not known, or not in its place");
+    error.windows = whole_number_of(cells[2]);
+    error.cases = whole_number_of(cells[3]);
+    error.covered = number_of(cells[4]);
+    if (error.use_to != load_classes[load] || error.windows != sample_sizes[size]) {
+      fail("a class of load or of size that is not known, or not in its place");
     }
     for (std::size_t i = 0; i < figure_count; ++i) {
       error.allowance[static_cast<Figure>(i)] = number_of(cells[first_figure + i]);
     }
-    errors.push_back(error);
   }
-  if (errors.size() != load_classes.size()) {
-    fail("classes of load are missing");
+  if (!csv.empty()) {
+    fail("more rows than classes");
   }
   return errors;
 }

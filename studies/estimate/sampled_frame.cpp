@@ -26,6 +26,13 @@ TracedPart SampledFrame::traced() const {
   return {static_cast<double>(traced_.count()) / pixels_, rays, 4.0 * (words + pixels_)};
 }
 
+const processors::program::WorkLog& SampledFrame::with_lattice() {
+  processors::program::PixelSet set = traced_;
+  lattice_.add_to(set);
+  trace(set);
+  return *frame_->log;
+}
+
 const processors::program::WorkLog& SampledFrame::with(const PacketWindows& windows) {
   trace(set_with(windows));
   return *frame_->log;

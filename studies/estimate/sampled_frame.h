@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "processors/machine/packets.h"
 #include "processors/program/pixel_set.h"
@@ -31,12 +32,14 @@ class SampledFrame {
   [[nodiscard]] const PixelLattice& lattice() const { return lattice_; }
   /// The share of all pixels that would be traced after with(windows).
   [[nodiscard]] double share_with(const PacketWindows& windows) const;
+  /// The log of the lattice and of all that was traced before.
+  const processors::program::WorkLog& with_lattice();
   /// The log of the lattice, of these windows and of all that was traced before.
   const processors::program::WorkLog& with(const PacketWindows& windows);
   /// with() must have been called.
   [[nodiscard]] TracedPart traced() const;
-  /// What is traced. with() must have been called.
-  [[nodiscard]] const processors::program::Frame& part() const { return *frame_; }
+  /// Gives away what is traced. with() must have been called.
+  [[nodiscard]] processors::program::Frame part() && { return std::move(*frame_); }
   /// Traces all that is missing, and gives the whole frame away.
   [[nodiscard]] processors::program::Frame whole() &&;
 

@@ -7,52 +7,17 @@
 #include <queue>
 #include <random>
 
-#include "memory/link.h"
 #include "processors/cost/step_time.h"
 #include "processors/passes/one_pass.h"
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
+#include "studies/estimate/tenures.h"
 
 namespace marti::studies::estimate {
 
 using processors::machine::MachineConfig;
 
 namespace {
-
-// Times of one read or write over the interconnect, in ticks.
-struct Tenures {
-  bool bus = false;
-  double read = 0.0;      // for which a read holds the bus
-  double write = 0.0;     // for which a write holds the bus
-  double per_read = 1.0;  // how often a read requests the bus
-  double miss = 0.0;      // of a read without contention
-  double bank_busy = 0.0;
-  sim::Ticks last_write = 0;  // from the start of a write to its end
-};
-
-Tenures tenures_of(const MachineConfig& machine, std::uint32_t pixel_bytes) {
-  const memory::InterconnectConfig& config = machine.interconnect;
-  Tenures tenures;
-  if (config.kind == memory::InterconnectKind::ideal) {
-    tenures.last_write = config.clock.cycles(config.latency_cycles);
-    tenures.miss = static_cast<double>(tenures.last_write);
-    return tenures;
-  }
-  const memory::BeatTime beats(config);
-  const auto address = static_cast<double>(config.clock.cycles(config.address_cycles));
-  const auto line = static_cast<double>(beats(machine.cache.cache.line));
-  const auto pixel = static_cast<double>(beats(pixel_bytes));
-  const auto bank = static_cast<double>(machine.banks.clock.cycles(machine.banks.access_cycles));
-  const bool held = config.mode == memory::BusMode::held;
-  tenures.bus = true;
-  tenures.read = address + line + (held ? bank : 0.0);
-  tenures.write = address + pixel;
-  tenures.per_read = held ? 1.0 : 2.0;
-  tenures.miss = address + bank + line;
-  tenures.bank_busy = held ? 0.0 : static_cast<double>(machine.banks.clock.cycles(machine.banks.busy_cycles));
-  tenures.last_write = std::llround(address + pixel + bank);
-  return tenures;
-}
 
 // The part of the frame that does not depend on the cache.
 struct PacketsWork {
@@ -213,7 +178,7 @@ std::vector<Estimate> estimate_analytically(const processors::program::WorkLog& 
   const auto all_words = static_cast<double>(std::accumulate(work.words.begin(), work.words.end(), 0ULL));
   work.scale = pass.words > 0 ? all_words / static_cast<double>(pass.words) : 1.0;
 
-  const Tenures tenures = tenures_of(machine, machine.layout.pixel_bytes);
+  const Tenures tenures = tenures_of(machine);
   std::vector<Estimate> estimates;
   for (const std::int64_t missed : pass.misses) {
     const double misses = work.scale * static_cast<double>(missed);

@@ -10,6 +10,7 @@
 #include "sim/error.h"
 #include "sim/key_error.h"
 #include "studies/estimate/packet_schedule.h"
+#include "studies/estimate/tenures.h"
 
 namespace marti::studies::estimate {
 
@@ -111,12 +112,12 @@ void check_sample(const processors::machine::MachineConfig& machine) {
 
 LatticeWork::LatticeWork(const processors::program::WorkLog& log,
                          const processors::machine::MachineConfig& machine, const PixelLattice& lattice,
-                         const processors::machine::PacketList& packets)
-    : lattice_(lattice) {
+                         const processors::machine::PacketList& packets, processors::walk::KeptVisits& visits)
+    : lattice_(lattice), pixels_(static_cast<double>(log.width) * static_cast<double>(log.height)) {
   std::vector<double> times;
   std::vector<double> misses;
   for (const processors::passes::PixelFigures& pixel :
-       processors::passes::pixel_figures(log, machine, lattice.pixels())) {
+       processors::passes::pixel_figures(log, machine, lattice.pixels(), &visits)) {
     of_pixels_.push_back({static_cast<double>(pixel.hit_time), expected_misses(pixel)});
     times.push_back(of_pixels_.back().hit_time);
     misses.push_back(of_pixels_.back().misses);
@@ -130,6 +131,13 @@ LatticeWork::LatticeWork(const processors::program::WorkLog& log,
   }
 }
 
+double LatticeWork::expected_use(const processors::machine::MachineConfig& machine) const {
+  const Tenures tenures = tenures_of(machine);
+  const double busy = all_.misses * tenures.read + pixels_ * tenures.write;
+  const double nodes = (all_.hit_time + all_.misses * tenures.miss) / machine.all_nodes();
+  return busy > 0.0 ? busy / std::max(busy, nodes) : 0.0;
+}
+
 double LatticeWork::half_width(const KnownWork& counts_for) const {
   std::vector<double> values;
   values.reserve(of_pixels_.size());
@@ -141,12 +149,12 @@ double LatticeWork::half_width(const KnownWork& counts_for) const {
 
 SampledMachine sample_machine(const processors::program::WorkLog& log,
                               const processors::machine::MachineConfig& machine, const PacketWindows& windows,
-                              const LatticeWork& work) {
+                              const LatticeWork& work, processors::walk::KeptVisits& visits) {
   const std::vector<std::uint64_t> chosen = windows.chosen();
   const processors::walk::PacketSample sample(chosen, windows.packets().size(),
                                               processors::walk::PacketSample::all_before);
   const processors::replay::MachineResult result =
-      processors::replay::replay(log, machine, {.sample = &sample});
+      processors::replay::replay(log, machine, {.sample = &sample, .visits = &visits});
   SampledMachine sampled;
   Estimate& estimate = sampled.estimate;
   const WindowTotals totals = totals_of_windows(windows, machine, result.packet_figures, work);
@@ -219,13 +227,15 @@ SampledRun estimate_by_sample(const processors::program::WorkLog& log,
                               const processors::machine::MachineConfig& machine, const PacketWindows& windows,
                               const PixelLattice& lattice) {
   check_sample(machine);
-  const LatticeWork work(log, machine, lattice, windows.packets());
-  const SampledMachine sampled = sample_machine(log, machine, windows, work);
+  processors::walk::KeptVisits visits;
+  const LatticeWork work(log, machine, lattice, windows.packets(), visits);
+  const SampledMachine sampled = sample_machine(log, machine, windows, work, visits);
   return machine.all_nodes() == 1
              ? add_one_node(sampled, sampled, windows, work)
-             : add_one_node(sampled,
-                            sample_machine(log, processors::machine::one_node_of(machine), windows, work),
-                            windows, work);
+             : add_one_node(
+                   sampled,
+                   sample_machine(log, processors::machine::one_node_of(machine), windows, work, visits),
+                   windows, work);
 }
 
 }  // namespace marti::studies::estimate

@@ -6,6 +6,7 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/walk/kept_visits.h"
 #include "studies/estimate/packet_windows.h"
 #include "studies/estimate/regression_estimate.h"
 #include "studies/estimate/simulator_figures.h"
@@ -23,17 +24,21 @@ void check_sample(const processors::machine::MachineConfig& machine);
 /// many nodes they have.
 class LatticeWork {
  public:
-  /// `log` must hold the pixels of the lattice; its others are not looked at.
+  /// `log` must hold the pixels of the lattice; its others are not looked at. `visits`: see pixel_figures().
   LatticeWork(const processors::program::WorkLog& log, const processors::machine::MachineConfig& machine,
-              const PixelLattice& lattice, const processors::machine::PacketList& packets);
+              const PixelLattice& lattice, const processors::machine::PacketList& packets,
+              processors::walk::KeptVisits& visits);
 
   [[nodiscard]] const std::vector<KnownWork>& of_packets() const { return of_packets_; }
   [[nodiscard]] const KnownWork& all() const { return all_; }
+  /// What share of the frame the machine's interconnect is busy, roughly.
+  [[nodiscard]] double expected_use(const processors::machine::MachineConfig& machine) const;
   /// Half of the 95 % interval of all(), with what its time and its misses count for.
   [[nodiscard]] double half_width(const KnownWork& counts_for) const;
 
  private:
   const PixelLattice& lattice_;
+  double pixels_;  // of the image
   std::vector<KnownWork> of_pixels_;
   std::vector<KnownWork> of_packets_;
   KnownWork all_;
@@ -57,10 +62,11 @@ struct SampledMachine {
 /// log has of the packets left out since its last one (processors/walk/packet_sample.h). The frame time is
 /// that of a host that hands out packets of the estimated times, or the time that the interconnect needs for
 /// all transfers, if that is longer. If all windows are drawn and the log is whole, the result is exact.
-/// check_sample() must not refuse the machine.
+/// check_sample() must not refuse the machine. `visits`: see replay::ReplayOptions.
 [[nodiscard]] SampledMachine sample_machine(const processors::program::WorkLog& log,
                                             const processors::machine::MachineConfig& machine,
-                                            const PacketWindows& windows, const LatticeWork& work);
+                                            const PacketWindows& windows, const LatticeWork& work,
+                                            processors::walk::KeptVisits& visits);
 
 /// A machine, and the same machine with one node.
 struct SampledRun {

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
-#include <vector>
 
 #include "sim/config_errors.h"
 #include "sim/error.h"
@@ -27,16 +28,19 @@ namespace {
 // A sample of as many windows as the measured errors are known of is taken at once where it traces so little
 // that it costs next to nothing.
 constexpr double cheap_share = 0.05;
+// Or where it traces so little, and the lattice says that it is likely to be large enough.
+constexpr double fair_share = 0.15;
 // Else a first, small sample says what the next must be.
 constexpr std::uint64_t first_strata = 4;
-// The largest share of the pixels that the first sample may trace. If an exact run turns out to be cheaper,
+// The largest share of the pixels that this first sample may trace. If an exact run turns out to be cheaper,
 // what was traced is not lost, but its packets were replayed in vain.
 constexpr double most_at_first = 0.07;
 // The largest share of the pixels that a later sample may trace. Each sample replays the packets of those
 // before it again, so that what it traces costs up to twice as much as in an exact run.
 constexpr double most_share = 0.5;
-// Half-widths of small samples say only roughly what a larger one must be.
-constexpr double margin = 1.3;
+// A sample of least_windows is taken to be large enough where the measured errors leave it so much of what is
+// asked for.
+constexpr double likely_share_of_tolerance = 0.5;
 // Degrees of freedom from which on more of them make an interval hardly narrower.
 constexpr std::uint64_t many_degrees = 25;
 
@@ -75,28 +79,181 @@ double share_for(const PacketWindows& windows, std::uint64_t degrees, double lat
   const double drawn =
       2.0 * static_cast<double>(windows.strata().size()) / static_cast<double>(windows.windows());
   const double student = student_95(std::max(degrees, many_degrees)) / student_95(degrees);
+  // By one standard error of a standard deviation from so many degrees of freedom.
+  const double margin = 1.0 + 1.0 / std::sqrt(2.0 * static_cast<double>(degrees));
   const double own = margin * student * std::sqrt(std::max(0.0, half_width * half_width - lattice * lattice));
   const double of_windows = std::sqrt(wanted * wanted - lattice * lattice);
   return 1.0 / (1.0 + of_windows / own * (of_windows / own) * (1.0 / drawn - 1.0));
 }
 
-// The answer of a sample whose frame time is known well enough.
-EstimatedRun with_one_node(const SampledMachine& sampled, const processors::program::WorkLog& log,
-                           const processors::machine::MachineConfig& machine, const PacketWindows& windows,
-                           const LatticeWork& work) {
-  EstimatedRun run;
-  run.sampled =
-      machine.all_nodes() == 1
-          ? add_one_node(sampled, sampled, windows, work)
-          : add_one_node(sampled,
-                         sample_machine(log, processors::machine::one_node_of(machine), windows, work),
-                         windows, work);
-  run.windows = windows.strata().size() * 2;
-  run.of_windows = windows.windows();
-  run.packets = windows.chosen().size();
-  run.of_packets = windows.packets().size();
-  return run;
-}
+// A frame whose samples grow until one is large enough.
+class Sampling {
+ public:
+  Sampling(SampledFrame& frame, const processors::machine::PacketList& packets,
+           const processors::machine::MachineConfig& machine, double tolerance, std::uint64_t seed)
+      : frame_(frame),
+        packets_(packets),
+        machine_(machine),
+        nodes_(machine.all_nodes()),
+        tolerance_(tolerance),
+        seed_(seed),
+        errors_(parse_measured_errors(measured_errors_csv())) {}
+
+  WithinAnswer answer() {
+    double least = least_allowance(errors_[0]);
+    for (const auto& load : errors_) {
+      least = std::min(least, least_allowance(load));
+    }
+    if (least >= tolerance_) {
+      return {std::nullopt, not_known(least)};
+    }
+    std::uint64_t strata = first();
+    double most = 2 * strata >= least_windows ? fair_share : most_at_first;
+    for (bool begun = false;; begun = true, most = most_share) {
+      const PacketWindows windows = drawn(strata);
+      if (const double share = frame_.share_with(windows); windows.has_all() || share > most) {
+        return {std::nullopt,
+                fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
+                            begun ? "a larger sample" : "the smallest sample",
+                            100.0 * (windows.has_all() ? 1.0 : share), begun ? "again" : "first")};
+      }
+      WithinAnswer answer = attempt(windows);
+      if (answer.estimate || !answer.reason.empty()) {
+        return answer;
+      }
+      // The number of strata doubles, so that all that was drawn is drawn again.
+      do {
+        strata *= 2;
+      } while (2.0 * static_cast<double>(strata) < 0.99 * wanted_windows_);
+    }
+  }
+
+ private:
+  [[nodiscard]] PacketWindows drawn(std::uint64_t strata) const {
+    return {packets_, window_length(nodes_), strata, seed_};
+  }
+
+  [[nodiscard]] double least_allowance(const std::array<MeasuredError, sample_sizes.size()>& load) const {
+    double least = width_of(load[0].allowance, nodes_);
+    for (const MeasuredError& error : load) {
+      least = std::min(least, width_of(error.allowance, nodes_));
+    }
+    return least;
+  }
+
+  [[nodiscard]] static std::string not_known(double allowance) {
+    return fmt::format(
+        "samples of such machines are known to have errors of up to {:.2g} % beside what a larger sample "
+        "lessens",
+        100.0 * allowance);
+  }
+
+  // The strata of the first sample.
+  std::uint64_t first() {
+    constexpr std::uint64_t least_strata = least_windows / 2;
+    const double share = frame_.share_with(drawn(least_strata));
+    if (share > cheap_share && share <= fair_share) {
+      work_.emplace(frame_.with_lattice(), machine_, frame_.lattice(), packets_, visits_);
+      const MeasuredError& error = errors_[load_class_of(work_->expected_use(machine_))][0];
+      return width_of(error.allowance, nodes_) < likely_share_of_tolerance * tolerance_ ? least_strata
+                                                                                        : first_strata;
+    }
+    return share <= cheap_share ? least_strata : first_strata;
+  }
+
+  // An estimate; or the reason why there is none; or neither, and wanted_windows_.
+  WithinAnswer attempt(const PacketWindows& windows) {
+    const processors::program::WorkLog& log = frame_.with(windows);
+    if (!work_) {
+      work_.emplace(log, machine_, frame_.lattice(), packets_, visits_);
+    }
+    const SampledMachine sampled = sample_machine(log, machine_, windows, *work_, visits_);
+    const auto& errors = errors_[load_class_of(sampled.estimate.value[Figure::use])];
+    const std::uint64_t count = windows.strata().size() * 2;
+    if (count < least_windows) {
+      return enlarge(windows, sampled.degrees, errors, Figure::end, sampled.estimate, sampled.lattice);
+    }
+    const MeasuredError& error = errors[size_class_of(count)];
+    if (sampled.estimate.half_width[Figure::end] + error.allowance[Figure::end] > tolerance_) {
+      return enlarge(windows, sampled.degrees, errors, Figure::end, sampled.estimate, sampled.lattice);
+    }
+    // One node is timed only now: most samples that are too small are found out before.
+    EstimatedRun run = with_one_node(sampled, log, windows);
+    const Estimate own = run.sampled.machine;
+    widen(run.sampled.machine, error.allowance, nodes_);
+    const double one_use = run.sampled.one_node.value[Figure::use];
+    widen(run.sampled.one_node, errors_[load_class_of(one_use)][size_class_of(count)].allowance, 1);
+    if (nodes_ == 1 || run.sampled.machine.half_width[Figure::speed_up] <= tolerance_) {
+      run.use_to = error.use_to;
+      return {run, ""};
+    }
+    return enlarge(windows, sampled.degrees, errors, Figure::speed_up, own,
+                   run.sampled.lattice[Figure::speed_up]);
+  }
+
+  // Sets wanted_windows_ to the fewest windows that are expected to suffice; else gives the
+  // reason why an exact run is cheaper.
+  WithinAnswer enlarge(const PacketWindows& windows, std::uint64_t degrees,
+                       const std::array<MeasuredError, sample_sizes.size()>& errors, Figure figure,
+                       const Estimate& estimate, double lattice) {
+    const auto all = static_cast<double>(windows.windows());
+    const auto now = static_cast<double>(windows.strata().size() * 2);
+    double least_error = std::numeric_limits<double>::infinity();
+    bool known = false;
+    for (std::size_t size = 0; size < errors.size(); ++size) {
+      if (size + 1 < errors.size() && now >= static_cast<double>(sample_sizes[size + 1])) {
+        continue;
+      }
+      const double allowance = errors[size].allowance[figure];
+      least_error = std::min(least_error, allowance);
+      if (tolerance_ - allowance <= lattice) {
+        continue;
+      }
+      known = true;
+      const double share =
+          share_for(windows, degrees, lattice, estimate.half_width[figure], tolerance_ - allowance);
+      wanted_windows_ = std::max(share * all, static_cast<double>(sample_sizes[size]));
+      if (size + 1 == errors.size() || wanted_windows_ < static_cast<double>(sample_sizes[size + 1])) {
+        break;
+      }
+    }
+    if (!known) {
+      return {std::nullopt, not_known(least_error + lattice)};
+    }
+    if (wanted_windows_ > most_share * all) {
+      return {std::nullopt, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
+                                        std::min(100.0, 100.0 * wanted_windows_ / all))};
+    }
+    return {};
+  }
+
+  // The answer of a sample whose frame time is known well enough.
+  EstimatedRun with_one_node(const SampledMachine& sampled, const processors::program::WorkLog& log,
+                             const PacketWindows& windows) {
+    EstimatedRun run;
+    run.sampled = nodes_ == 1 ? add_one_node(sampled, sampled, windows, *work_)
+                              : add_one_node(sampled,
+                                             sample_machine(log, processors::machine::one_node_of(machine_),
+                                                            windows, *work_, visits_),
+                                             windows, *work_);
+    run.windows = windows.strata().size() * 2;
+    run.of_windows = windows.windows();
+    run.packets = windows.chosen().size();
+    run.of_packets = windows.packets().size();
+    return run;
+  }
+
+  SampledFrame& frame_;
+  const processors::machine::PacketList& packets_;
+  const processors::machine::MachineConfig& machine_;
+  std::uint32_t nodes_;
+  double tolerance_;
+  std::uint64_t seed_;
+  MeasuredErrors errors_;
+  std::optional<LatticeWork> work_;  // empty before the lattice is traced
+  processors::walk::KeptVisits visits_;
+  double wanted_windows_ = 0.0;
+};
 
 }  // namespace
 
@@ -142,82 +299,7 @@ std::optional<std::string> not_sampled(const processors::machine::MachineConfig&
 WithinAnswer estimate_within(SampledFrame& frame, const processors::machine::PacketList& packets,
                              const processors::machine::MachineConfig& machine, double tolerance,
                              std::uint64_t seed) {
-  const std::vector<MeasuredError> errors = parse_measured_errors(measured_errors_csv());
-  const auto not_known = [&](double allowance) {
-    return fmt::format(
-        "samples of such machines are known to have errors of up to {:.2g} % beside what a larger sample "
-        "lessens",
-        100.0 * allowance);
-  };
-  const std::uint32_t nodes = machine.all_nodes();
-  const auto least = std::min_element(errors.begin(), errors.end(), [&](const auto& a, const auto& b) {
-    return width_of(a.allowance, nodes) < width_of(b.allowance, nodes);
-  });
-  if (width_of(least->allowance, nodes) >= tolerance) {
-    return {std::nullopt, not_known(width_of(least->allowance, nodes))};
-  }
-  std::optional<LatticeWork> work;  // of the lattice, which is traced with the first sample
-  const std::uint64_t length = window_length(nodes);
-  const std::uint64_t least_strata = *std::min_element(least_windows.begin(), least_windows.end()) / 2;
-  const bool cheap = frame.share_with({packets, length, least_strata, seed}) <= cheap_share;
-  const std::uint64_t begun = cheap ? least_strata : first_strata;
-  double most = most_at_first;
-  for (std::uint64_t strata = begun;;) {
-    const PacketWindows windows(packets, length, strata, seed);
-    if (const double share = frame.share_with(windows); windows.has_all() || share > most) {
-      return {std::nullopt,
-              fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
-                          strata == begun ? "the smallest sample" : "a larger sample",
-                          100.0 * (windows.has_all() ? 1.0 : share), strata == begun ? "first" : "again")};
-    }
-    most = most_share;
-    const processors::program::WorkLog& log = frame.with(windows);
-    if (!work) {
-      work.emplace(log, machine, frame.lattice(), packets);
-    }
-    const SampledMachine sampled = sample_machine(log, machine, windows, *work);
-    const std::size_t load = load_class_of(sampled.estimate.value[Figure::use]);
-    const MachineFigures& allowance = errors[load].allowance;
-    const std::uint64_t drawn = windows.strata().size() * 2;
-    const auto of_windows = static_cast<double>(windows.windows());
-    double share = 2.0 * static_cast<double>(drawn) / of_windows;
-    share = std::max(share, static_cast<double>(least_windows[load]) / of_windows);
-    // Gives the reason when no sample is large enough.
-    const auto enlarge = [&](Figure figure, const Estimate& estimate, double lattice) {
-      const double wanted = tolerance - allowance[figure];
-      share = std::max(share, wanted > lattice ? share_for(windows, sampled.degrees, lattice,
-                                                           estimate.half_width[figure], wanted)
-                                               : 1.0);
-      return wanted > lattice ? "" : not_known(allowance[figure] + lattice);
-    };
-    std::string reason;
-    if (sampled.estimate.half_width[Figure::end] + allowance[Figure::end] > tolerance) {
-      reason = enlarge(Figure::end, sampled.estimate, sampled.lattice);
-    } else if (drawn >= least_windows[load]) {
-      // One node is timed only now: most samples that are too small are found out before.
-      EstimatedRun run = with_one_node(sampled, log, machine, windows, *work);
-      const Estimate own = run.sampled.machine;
-      widen(run.sampled.machine, allowance, nodes);
-      widen(run.sampled.one_node, errors[load_class_of(run.sampled.one_node.value[Figure::use])].allowance,
-            1);
-      if (nodes == 1 || run.sampled.machine.half_width[Figure::speed_up] <= tolerance) {
-        run.use_to = errors[load].use_to;
-        return {run, ""};
-      }
-      reason = enlarge(Figure::speed_up, own, run.sampled.lattice[Figure::speed_up]);
-    }
-    if (!reason.empty()) {
-      return {std::nullopt, reason};
-    }
-    if (share > most_share) {
-      return {std::nullopt,
-              fmt::format("a sample that is large enough would trace {:.0f} % of the pixels", 100.0 * share)};
-    }
-    // The number of strata doubles, so that all that was drawn is drawn again.
-    for (double next = static_cast<double>(drawn) / of_windows; next < 0.99 * share; next *= 2.0) {
-      strata *= 2;
-    }
-  }
+  return Sampling(frame, packets, machine, tolerance, seed).answer();
 }
 
 std::string run_within(sim::Config& config, double tolerance, bool json, run::RunOptions exact) {
@@ -259,7 +341,7 @@ std::string run_within(sim::Config& config, double tolerance, bool json, run::Ru
     result.frame_config = frame;
     result.machine = machine;
     const TracedPart traced = sampled.traced();
-    result.functional = prepared.part(sampled.part());
+    result.functional = prepared.part(std::move(sampled).part());
     return json ? estimate_json(result, *answer.estimate, traced, tolerance)
                 : estimate_text(result, *answer.estimate, traced, tolerance);
   });

@@ -19,7 +19,7 @@ using processors::program::Image;
 
 Image random_image(std::mt19937_64& random, std::uint32_t width, std::uint32_t height) {
   std::uniform_real_distribution<float> value(0.0F, 2.0F);
-  Image image{width, height, std::vector<glm::vec3>(std::size_t{width} * height)};
+  Image image{width, height, sim::LargeVector<glm::vec3>(std::size_t{width} * height)};
   for (glm::vec3& pixel : image.pixels) {
     pixel = {value(random), value(random), value(random)};
   }
@@ -39,7 +39,7 @@ TEST(RenderingMetrics, OfEqualImagesAreNothing) {
 }
 
 TEST(RenderingMetrics, OfOnePixelByHand) {
-  Image reference{2, 2, std::vector<glm::vec3>(4, glm::vec3(0.5F))};
+  Image reference{2, 2, sim::LargeVector<glm::vec3>(4, glm::vec3(0.5F))};
   Image image = reference;
   image.pixels[2] = {0.5F, 0.75F, 0.5F};
   const RenderingErrors errors = rendering_errors(image, reference);
