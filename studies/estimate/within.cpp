@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "sim/config_errors.h"
 #include "sim/error.h"
@@ -25,22 +27,18 @@ namespace marti::studies::estimate {
 
 namespace {
 
-// A sample of as many windows as the measured errors are known of is taken at once where it traces so little
-// that it costs next to nothing.
+// A sample of least_windows is taken at once where it traces so little that it costs next to nothing.
 constexpr double cheap_share = 0.05;
-// Or where it traces so little, and the lattice says that it is likely to be large enough.
-constexpr double fair_share = 0.15;
-// Else a first, small sample says what the next must be.
-constexpr std::uint64_t first_strata = 4;
-// The largest share of the pixels that this first sample may trace. If an exact run turns out to be cheaper,
-// what was traced is not lost, but its packets were replayed in vain.
-constexpr double most_at_first = 0.07;
-// The largest share of the pixels that a later sample may trace. Each sample replays the packets of those
-// before it again, so that what it traces costs up to twice as much as in an exact run.
-constexpr double most_share = 0.5;
-// A sample of least_windows is taken to be large enough where the measured errors leave it so much of what is
-// asked for.
+// The largest share of the pixels that the smallest sample which may do can trace: what is not estimated
+// after all is traced once, but the packets of a sample are then replayed in vain.
+constexpr double fair_share = 0.2;
+// Where a small sample costs more, the lattice is traced first. By the load that it lets expect, a sample of
+// least_windows is likely to do where the measured errors leave it so much of what is asked for; else a
+// first, smaller sample says what the next must be.
 constexpr double likely_share_of_tolerance = 0.5;
+constexpr std::uint64_t first_strata = 4;
+// The largest share of the pixels that a later sample may trace.
+constexpr double most_share = 0.3;
 // Degrees of freedom from which on more of them make an interval hardly narrower.
 constexpr std::uint64_t many_degrees = 25;
 
@@ -107,24 +105,23 @@ class Sampling {
     if (least >= tolerance_) {
       return {std::nullopt, not_known(least)};
     }
-    std::uint64_t strata = first();
-    double most = 2 * strata >= least_windows ? fair_share : most_at_first;
-    for (bool begun = false;; begun = true, most = most_share) {
-      const PacketWindows windows = drawn(strata);
-      if (const double share = frame_.share_with(windows); windows.has_all() || share > most) {
-        return {std::nullopt,
-                fmt::format("{} would trace {:.0f} % of the pixels and replay its packets {}",
-                            begun ? "a larger sample" : "the smallest sample",
-                            100.0 * (windows.has_all() ? 1.0 : share), begun ? "again" : "first")};
-      }
-      WithinAnswer answer = attempt(windows);
+    if (std::string reason = begin(); !reason.empty()) {
+      return {std::nullopt, std::move(reason)};
+    }
+    for (;;) {
+      WithinAnswer answer = attempt(drawn(strata_));
       if (answer.estimate || !answer.reason.empty()) {
         return answer;
       }
       // The number of strata doubles, so that all that was drawn is drawn again.
       do {
-        strata *= 2;
-      } while (2.0 * static_cast<double>(strata) < 0.99 * wanted_windows_);
+        strata_ *= 2;
+      } while (2.0 * static_cast<double>(strata_) < 0.99 * wanted_windows_);
+      if (const double share = share_of(strata_); share > most_share) {
+        return {std::nullopt,
+                fmt::format("a larger sample would trace {:.0f} % of the pixels and replay its packets again",
+                            100.0 * share)};
+      }
     }
   }
 
@@ -148,17 +145,40 @@ class Sampling {
         100.0 * allowance);
   }
 
-  // The strata of the first sample.
-  std::uint64_t first() {
-    constexpr std::uint64_t least_strata = least_windows / 2;
-    const double share = frame_.share_with(drawn(least_strata));
-    if (share > cheap_share && share <= fair_share) {
-      work_.emplace(frame_.with_lattice(), machine_, frame_.lattice(), packets_, visits_);
-      const MeasuredError& error = errors_[load_class_of(work_->expected_use(machine_))][0];
-      return width_of(error.allowance, nodes_) < likely_share_of_tolerance * tolerance_ ? least_strata
-                                                                                        : first_strata;
+  // The share of the pixels that are traced with a sample of so many strata; 1 if that is all windows.
+  [[nodiscard]] double share_of(std::uint64_t strata) const {
+    const PacketWindows windows = drawn(strata);
+    return windows.has_all() ? 1.0 : frame_.share_with(windows);
+  }
+
+  static std::string too_large(double share) {
+    return fmt::format("the smallest sample would trace {:.0f} % of the pixels and replay its packets first",
+                       100.0 * share);
+  }
+
+  // Sets the strata of the first sample; or gives the reason why there is none.
+  std::string begin() {
+    strata_ = least_windows / 2;
+    const double share = share_of(strata_);
+    if (share > fair_share) {
+      return too_large(share);
     }
-    return share <= cheap_share ? least_strata : first_strata;
+    if (share <= cheap_share) {
+      return "";
+    }
+    work_.emplace(frame_.with_lattice(), machine_, frame_.lattice(), packets_, visits_);
+    const auto& errors = errors_[load_class_of(work_->expected_use(machine_))];
+    if (width_of(errors[0].allowance, nodes_) < likely_share_of_tolerance * tolerance_) {
+      return "";
+    }
+    for (const MeasuredError& error : errors) {
+      if (width_of(error.allowance, nodes_) < tolerance_) {
+        const double needed = share_of(error.windows / 2);
+        strata_ = first_strata;
+        return needed > fair_share ? too_large(needed) : "";
+      }
+    }
+    return not_known(least_allowance(errors));
   }
 
   // An estimate; or the reason why there is none; or neither, and wanted_windows_.
@@ -170,61 +190,77 @@ class Sampling {
     const SampledMachine sampled = sample_machine(log, machine_, windows, *work_, visits_);
     const auto& errors = errors_[load_class_of(sampled.estimate.value[Figure::use])];
     const std::uint64_t count = windows.strata().size() * 2;
-    if (count < least_windows) {
-      return enlarge(windows, sampled.degrees, errors, Figure::end, sampled.estimate, sampled.lattice);
+    const bool small = count < least_windows;
+    std::vector<Need> needs = {{Figure::end, sampled.estimate.half_width[Figure::end], sampled.lattice}};
+    const auto narrow = [&](const Need& need) {
+      return !small && need.half_width + errors[size_class_of(count)].allowance[need.figure] <= tolerance_;
+    };
+    // One node is timed only where it takes little time, or may be all that is missing.
+    if (small || narrow(needs[0])) {
+      EstimatedRun run = with_one_node(sampled, log, windows);
+      Estimate& machine = run.sampled.machine;
+      needs.push_back(
+          {Figure::speed_up, machine.half_width[Figure::speed_up], run.sampled.lattice[Figure::speed_up]});
+      if (narrow(needs[0]) && (nodes_ == 1 || narrow(needs[1]))) {
+        const MeasuredError& error = errors[size_class_of(count)];
+        const double one_use = run.sampled.one_node.value[Figure::use];
+        widen(machine, error.allowance, nodes_);
+        widen(run.sampled.one_node, errors_[load_class_of(one_use)][size_class_of(count)].allowance, 1);
+        run.use_to = error.use_to;
+        return {run, ""};
+      }
+      if (nodes_ == 1) {
+        needs.pop_back();
+      }
     }
-    const MeasuredError& error = errors[size_class_of(count)];
-    if (sampled.estimate.half_width[Figure::end] + error.allowance[Figure::end] > tolerance_) {
-      return enlarge(windows, sampled.degrees, errors, Figure::end, sampled.estimate, sampled.lattice);
+    wanted_windows_ = 0.0;
+    for (const Need& need : needs) {
+      if (std::string reason = enlarge(windows, sampled.degrees, errors, need); !reason.empty()) {
+        return {std::nullopt, std::move(reason)};
+      }
     }
-    // One node is timed only now: most samples that are too small are found out before.
-    EstimatedRun run = with_one_node(sampled, log, windows);
-    const Estimate own = run.sampled.machine;
-    widen(run.sampled.machine, error.allowance, nodes_);
-    const double one_use = run.sampled.one_node.value[Figure::use];
-    widen(run.sampled.one_node, errors_[load_class_of(one_use)][size_class_of(count)].allowance, 1);
-    if (nodes_ == 1 || run.sampled.machine.half_width[Figure::speed_up] <= tolerance_) {
-      run.use_to = error.use_to;
-      return {run, ""};
-    }
-    return enlarge(windows, sampled.degrees, errors, Figure::speed_up, own,
-                   run.sampled.lattice[Figure::speed_up]);
+    return {};
   }
 
-  // Sets wanted_windows_ to the fewest windows that are expected to suffice; else gives the
+  // What a larger sample is to lessen.
+  struct Need {
+    Figure figure;
+    double half_width;  // the sample's own
+    double lattice;     // the lattice's part of it, which stays
+  };
+
+  // Raises wanted_windows_ to the fewest windows that are expected to suffice for one figure; else gives the
   // reason why an exact run is cheaper.
-  WithinAnswer enlarge(const PacketWindows& windows, std::uint64_t degrees,
-                       const std::array<MeasuredError, sample_sizes.size()>& errors, Figure figure,
-                       const Estimate& estimate, double lattice) {
+  std::string enlarge(const PacketWindows& windows, std::uint64_t degrees,
+                      const std::array<MeasuredError, sample_sizes.size()>& errors, const Need& need) {
     const auto all = static_cast<double>(windows.windows());
     const auto now = static_cast<double>(windows.strata().size() * 2);
     double least_error = std::numeric_limits<double>::infinity();
-    bool known = false;
+    double wanted = 0.0;
     for (std::size_t size = 0; size < errors.size(); ++size) {
-      if (size + 1 < errors.size() && now >= static_cast<double>(sample_sizes[size + 1])) {
+      const double above = size + 1 < errors.size() ? static_cast<double>(sample_sizes[size + 1]) : 2.0 * all;
+      const double left = tolerance_ - errors[size].allowance[need.figure];
+      if (now < above) {
+        least_error = std::min(least_error, tolerance_ - left);
+      }
+      if (now >= above || left <= need.lattice) {
         continue;
       }
-      const double allowance = errors[size].allowance[figure];
-      least_error = std::min(least_error, allowance);
-      if (tolerance_ - allowance <= lattice) {
-        continue;
-      }
-      known = true;
-      const double share =
-          share_for(windows, degrees, lattice, estimate.half_width[figure], tolerance_ - allowance);
-      wanted_windows_ = std::max(share * all, static_cast<double>(sample_sizes[size]));
-      if (size + 1 == errors.size() || wanted_windows_ < static_cast<double>(sample_sizes[size + 1])) {
+      wanted = std::max(share_for(windows, degrees, need.lattice, need.half_width, left) * all,
+                        static_cast<double>(sample_sizes[size]));
+      if (wanted < above) {
         break;
       }
     }
-    if (!known) {
-      return {std::nullopt, not_known(least_error + lattice)};
+    if (wanted == 0.0) {
+      return not_known(least_error + need.lattice);
     }
-    if (wanted_windows_ > most_share * all) {
-      return {std::nullopt, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
-                                        std::min(100.0, 100.0 * wanted_windows_ / all))};
+    if (wanted > most_share * all) {
+      return fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
+                         std::min(100.0, 100.0 * wanted / all));
     }
-    return {};
+    wanted_windows_ = std::max(wanted_windows_, wanted);
+    return "";
   }
 
   // The answer of a sample whose frame time is known well enough.
@@ -252,6 +288,7 @@ class Sampling {
   MeasuredErrors errors_;
   std::optional<LatticeWork> work_;  // empty before the lattice is traced
   processors::walk::KeptVisits visits_;
+  std::uint64_t strata_ = 0;  // of the next sample
   double wanted_windows_ = 0.0;
 };
 
