@@ -56,10 +56,10 @@ struct Box {
 
 /// Builds level by level. Nodes of a level are numbered in the order of their parents; `lists` holds the
 /// triangles that each node lists.
-class Builder {
+class BspBuilder {
  public:
-  Builder(const TriangleSet& triangles, const BspOptions& options, const RootFrame& frame, Topology& topology,
-          std::vector<LevelStatistics>& levels)
+  BspBuilder(const TriangleSet& triangles, const BspOptions& options, const RootFrame& frame,
+             Topology& topology, std::vector<LevelStatistics>& levels)
       : triangles_(triangles), options_(options), frame_(frame), topology_(topology), levels_(levels) {}
 
   void run() {
@@ -238,7 +238,7 @@ Bsp Bsp::build(std::shared_ptr<const TriangleSet> triangles, const BspOptions& o
   tree.triangles_ = std::move(triangles);
   tree.options_ = options;
   tree.frame_ = make_frame(*tree.triangles_);
-  Builder(*tree.triangles_, tree.options_, tree.frame_, tree.topology_, tree.levels_).run();
+  BspBuilder(*tree.triangles_, tree.options_, tree.frame_, tree.topology_, tree.levels_).run();
   if (options.walk == BspWalk::push_point && !tree.frame_.box.empty()) {
     require_tree(options.memory,
                  bytes_of(tree.topology_) + tree.topology_.nodes.size() * (sizeof(double) + sizeof(Cell)),

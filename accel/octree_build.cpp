@@ -25,10 +25,10 @@ constexpr std::size_t pieces_at_once = 16;
 /// Each level is made from the one before in three steps: its nodes' triangles are sorted, in parallel; which
 /// nodes are split is decided in the order of the nodes, because it depends on how much the tree lists so
 /// far; the children's lists are written, in parallel.
-class Builder {
+class OctreeBuilder {
  public:
-  Builder(const TriangleSet& triangles, const OctreeOptions& options, const RootFrame& frame,
-          const BuildLimit& limit, OctreeBuild& out)
+  OctreeBuilder(const TriangleSet& triangles, const OctreeOptions& options, const RootFrame& frame,
+                const BuildLimit& limit, OctreeBuild& out)
       : triangles_(triangles), options_(options), frame_(frame), limit_(limit), out_(out) {}
 
   void run() {
@@ -280,7 +280,7 @@ void check_octree_options(std::string_view structure, const OctreeOptions& optio
 OctreeBuild build_octree(const TriangleSet& triangles, const OctreeOptions& options, const RootFrame& frame,
                          const BuildLimit& limit) {
   OctreeBuild build;
-  Builder(triangles, options, frame, limit, build).run();
+  OctreeBuilder(triangles, options, frame, limit, build).run();
   return build;
 }
 

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "studies/figures/best_offer.h"
 
@@ -86,36 +91,47 @@ tables::Table method_table(const SimulatorStudy& study, std::span<const MethodEr
 }
 
 tables::Table figure_table(const SimulatorStudy& study, std::span<const MethodErrors> errors) {
-  tables::Table table(
-      "error_figures", "Figures by every method: errors and intervals",
-      {method_column,
-       knob_column,
-       {"figure", tables::ColumnType::text, "",
-        "what is estimated; use: difference of shares, others: relative"},
-       {"cases", tables::ColumnType::integer, "1", "machines"},
-       {"mean", tables::ColumnType::real, "fraction", "signed mean of the errors"},
-       {"mean_abs", tables::ColumnType::real, "fraction", "mean of their sizes"},
-       {"worst", tables::ColumnType::real, "fraction", "the largest"},
-       {"worst_case", tables::ColumnType::text, "", "where that is"},
-       {"covered", tables::ColumnType::real, "fraction", "share of cases in the method's own 95 % interval"},
-       {"covered_widened", tables::ColumnType::real, "fraction",
-        "share in it when widened by what errors exceed it by on other scenes"},
-       {"allowance_30", tables::ColumnType::real, "fraction",
-        "by how much it is to be widened, with an interconnect busy up to 30 % of the frame"},
-       {"allowance_70", tables::ColumnType::real, "fraction", "likewise, up to 70 %"},
-       {"allowance_100", tables::ColumnType::real, "fraction", "likewise, above"}});
+  std::vector<tables::Column> columns = {
+      method_column,
+      knob_column,
+      {"figure", tables::ColumnType::text, "",
+       "what is estimated; use: difference of shares, others: relative"},
+      {"cases", tables::ColumnType::integer, "1", "machines"},
+      {"mean", tables::ColumnType::real, "fraction", "signed mean of the errors"},
+      {"mean_abs", tables::ColumnType::real, "fraction", "mean of their sizes"},
+      {"worst", tables::ColumnType::real, "fraction", "the largest"},
+      {"worst_case", tables::ColumnType::text, "", "where that is"},
+      {"covered", tables::ColumnType::real, "fraction", "share of cases in the method's own 95 % interval"},
+      {"covered_widened", tables::ColumnType::real, "fraction",
+       "share in it when widened by what errors exceed it by on other scenes"}};
+  for (const double use_to : estimate::load_classes) {
+    columns.push_back(
+        {fmt::format("allowance_{:g}", 100.0 * use_to), tables::ColumnType::real, "fraction",
+         fmt::format("by how much it is to be widened where the interconnect is busy up to {:g} % "
+                     "of the frame, more than in the class before",
+                     100.0 * use_to)});
+  }
+  tables::Table table("error_figures", "Figures by every method: errors and intervals", std::move(columns));
   const std::span<const estimate::Method> methods = estimate::simulator_methods();
   for (std::size_t m = 0; m < methods.size(); ++m) {
     for (std::size_t figure = 0; errors[m].any && figure < estimate::figure_count; ++figure) {
       const FigureErrors& found = errors[m].figures[figure];
-      table.add_row({methods[m].name(), methods[m].knob(), std::string(estimate::figure_names[figure]),
-                     tables::count_cell(found.summary.cases), found.summary.mean, found.summary.mean_abs,
-                     found.summary.worst,
-                     found.summary.worst == 0.0 ? tables::Cell()
-                                                : tables::Cell(study.cases[found.summary.worst_case].name),
-                     optional_cell(found.covered), optional_cell(found.covered_widened),
-                     optional_cell(found.allowance[0]), optional_cell(found.allowance[1]),
-                     optional_cell(found.allowance[2])});
+      std::vector<tables::Cell> row = {methods[m].name(),
+                                       methods[m].knob(),
+                                       std::string(estimate::figure_names[figure]),
+                                       tables::count_cell(found.summary.cases),
+                                       found.summary.mean,
+                                       found.summary.mean_abs,
+                                       found.summary.worst,
+                                       found.summary.worst == 0.0
+                                           ? tables::Cell()
+                                           : tables::Cell(study.cases[found.summary.worst_case].name),
+                                       optional_cell(found.covered),
+                                       optional_cell(found.covered_widened)};
+      for (const std::optional<double>& allowance : found.allowance) {
+        row.push_back(optional_cell(allowance));
+      }
+      table.add_row(std::move(row));
     }
   }
   return table;

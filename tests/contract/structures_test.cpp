@@ -175,8 +175,8 @@ std::vector<accel::TriangleCorners> corners_of(std::string_view scene) {
   return all;
 }
 
-// Rays of each of the 9 classes. In the long run 9 x 5,000 x 3 scenes x 4 parts and 9 x 5,000 x 8 soups x 2 parts are
-// 1,260,000 rays; in the short run a sixth.
+// Rays of each of the 9 classes. In the long run 9 x 5,000 x 3 scenes x 4 parts and 9 x 5,000 x 8 soups x 2
+// parts are 1,260,000 rays; in the short run a sixth.
 const auto rays_of_class = static_cast<std::uint32_t>(test::stride(800, 5000));
 
 class SceneContract : public ::testing::TestWithParam<std::tuple<std::string, unsigned>> {};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "processors/cost/step_time.h"
+#include "processors/walk/kept_visits.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/error.h"
@@ -72,6 +73,19 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
   if (StrippedLog::key_of(other) == both[1]->key()) {
     test::expect_equal(replay::replay(log, other), replay::replay(log, other, {.stripped = both[1].get()}));
     RC_ASSERT(!::testing::Test::HasFatalFailure());
+  }
+}
+
+// Machines one after the other, some of which need the visits of the one before and some others.
+RC_GTEST_PROP(Replay, KeptVisitsGiveTheSameResult, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const WorkLog log = test::small_log(random);
+  KeptVisits visits;
+  MachineConfig machine = test::random_machine(random);
+  for (int i = 0; i < 4; ++i) {
+    test::expect_equal(replay::replay(log, machine), replay::replay(log, machine, {.visits = &visits}));
+    RC_ASSERT(!::testing::Test::HasFatalFailure());
+    machine = test::pick(random, 0, 2) == 0 ? test::random_machine(random) : of_equal_key(random, machine);
   }
 }
 
