@@ -48,7 +48,7 @@ std::vector<PixelFigures> walk_all(const walk::ReplayInput& input, Caches caches
 }  // namespace
 
 std::vector<PixelFigures> pixel_figures(const program::WorkLog& log, const machine::MachineConfig& config,
-                                        std::span<const walk::PixelPlace> pixels, walk::KeptVisits* visits) {
+                                        std::span<const walk::PixelPlace> pixels, walk::KeptVisits& visits) {
   std::optional<walk::TreePlan> given;
   const machine::MachineConfig one_node = machine::one_node_of(config);
   const memory::Layout layout = walk::layout_of(log, one_node, given);
@@ -56,9 +56,7 @@ std::vector<PixelFigures> pixel_figures(const program::WorkLog& log, const machi
   const machine::PacketList packets(log.width, log.height, config.packets);
   const std::vector<std::uint32_t> rank = walk::node_ranks(log, one_node);
   walk::ReplayInput input = {log, one_node, layout, packets, rank};
-  input.visits = visits;
-  // To plan all visits of the tree for few pixels alone would take longer than walking without a plan.
-  input.step_by_step = visits == nullptr;
+  input.visits = &visits;
   return config.cache.organisation == machine::CacheOrganisation::none
              ? walk_all(input, walk::NoCaches(), pixels)
              : walk_all(input, walk::AnyCaches(one_node), pixels);

@@ -21,11 +21,11 @@ struct PixelFigures {
 };
 
 /// One for each of `pixels`, which one node walks in their order, each twice. `config` must have a given
-/// tree, one context and no second level of caches. `visits`: the plan that a replay of this machine will
-/// walk, too; null: there will be none.
+/// tree, one context and no second level of caches. `visits`: kept for the
+/// replays of this machine that follow.
 [[nodiscard]] std::vector<PixelFigures> pixel_figures(const program::WorkLog& log,
                                                       const machine::MachineConfig& config,
                                                       std::span<const walk::PixelPlace> pixels,
-                                                      walk::KeptVisits* visits = nullptr);
+                                                      walk::KeptVisits& visits);
 
 }  // namespace marti::processors::passes

@@ -4,18 +4,13 @@
 
 namespace marti::processors::walk {
 
-std::shared_ptr<const VisitPlan> visits_of(const ReplayInput& input) {
-  return std::make_shared<const VisitPlan>(
-      plan_visits(input.log, input.layout, input.node_rank,
-                  static_cast<unsigned>(std::countr_zero(input.config.reference_bytes())),
-                  cost::step_ticks(input.config, input.log)));
-}
-
 std::shared_ptr<const VisitPlan> KeptVisits::of(const ReplayInput& input) {
   const std::uint32_t line_bytes = input.config.reference_bytes();
   const cost::StepTicks ticks = cost::step_ticks(input.config, input.log);
   if (plan_ == nullptr || layout_ != input.config.layout || line_bytes_ != line_bytes || ticks_ != ticks) {
-    plan_ = visits_of(input);
+    plan_ = std::make_shared<const VisitPlan>(plan_visits(input.log, input.layout, input.node_rank,
+                                                          static_cast<unsigned>(std::countr_zero(line_bytes)),
+                                                          ticks));
     layout_ = input.config.layout;
     line_bytes_ = line_bytes;
     ticks_ = ticks;

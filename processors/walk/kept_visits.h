@@ -14,6 +14,7 @@ namespace marti::processors::walk {
 class KeptVisits {
  public:
   /// The visits of `input`, whose log must be of the tree of all inputs before, and whose tree is given.
+  /// Several threads may ask for visits that are kept already: then nothing is written.
   [[nodiscard]] std::shared_ptr<const VisitPlan> of(const ReplayInput& input);
 
  private:
@@ -22,8 +23,5 @@ class KeptVisits {
   std::uint32_t line_bytes_ = 0;
   cost::StepTicks ticks_;
 };
-
-/// The visits that a replay's walkers plan.
-[[nodiscard]] std::shared_ptr<const VisitPlan> visits_of(const ReplayInput& input);
 
 }  // namespace marti::processors::walk

@@ -33,8 +33,7 @@ class LogWalker {
  public:
   static constexpr bool steps_singly = true;  ///< can stop after every reference
 
-  /// `plan`: what visits_of() (kept_visits.h) has returned; null: taken from input.visits, or planned.
-  LogWalker(const ReplayInput& input, Caches caches, std::shared_ptr<const VisitPlan> plan = nullptr)
+  LogWalker(const ReplayInput& input, Caches caches)
       : input_(input),
         caches_(std::move(caches)),
         topology_(input.log.topology.nodes.data()),
@@ -48,9 +47,7 @@ class LogWalker {
         behind_(input),
         passes_misses_on_(!behind_.only_reads()) {
     if (Caches::present && !counted && !guarded && !input.step_by_step && input.causes == nullptr) {
-      plan_ = plan != nullptr           ? std::move(plan)
-              : input.visits == nullptr ? visits_of(input)
-                                        : input.visits->of(input);
+      plan_ = input.visits == nullptr ? KeptVisits().of(input) : input.visits->of(input);
       plan_limit_ = plan_->empty() ? 0 : 2U << program::operand_bits;
     }
   }

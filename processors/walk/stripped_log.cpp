@@ -215,11 +215,11 @@ template <class Caches>
 class StrippedLog::Stripper {
  public:
   /// `left`: bytes that all threads together may still write.
-  Stripper(const ReplayInput& input, std::span<const std::uint32_t> ways,
-           std::shared_ptr<const VisitPlan> plan, std::atomic<std::int64_t>& left, sim::WorkMeter* meter)
+  Stripper(const ReplayInput& input, std::span<const std::uint32_t> ways, std::atomic<std::int64_t>& left,
+           sim::WorkMeter* meter)
       : log_(input.log),
         packets_(input.config.packets),
-        walker_(input, Caches(input.config, std::max(1U, std::ranges::min(ways))), std::move(plan)),
+        walker_(input, Caches(input.config, std::max(1U, std::ranges::min(ways)))),
         left_(left),
         meter_(meter) {
     for (const std::uint32_t each : ways) {
@@ -316,7 +316,10 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program:
     }
     most_bytes -= fixed;
     const std::vector<std::uint32_t> rank = node_ranks(log, plain);
-    const ReplayInput input = {log, plain, layout, packets, rank};
+    ReplayInput input = {log, plain, layout, packets, rank};
+    KeptVisits visits;
+    (void)visits.of(input);  // before threads ask for them
+    input.visits = &visits;
     const std::size_t bands =
         log.height / plain.packets.height + (log.height % plain.packets.height != 0 ? 1 : 0);
     std::vector<std::shared_ptr<StrippedLog>> logs;
@@ -327,9 +330,8 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program:
     std::atomic<std::int64_t> left = static_cast<std::int64_t>(
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
     const auto strip_with = [&]<class Caches>() {
-      const std::shared_ptr<const VisitPlan> plan = visits_of(input);
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
-          [&] { return Stripper<Caches>(input, ways, plan, left, meter); });
+          [&] { return Stripper<Caches>(input, ways, left, meter); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
         const bool fits = left >= 0;
         for (const std::shared_ptr<StrippedLog>& each : logs) {

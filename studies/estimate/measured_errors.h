@@ -43,8 +43,10 @@ struct MeasuredError {
                               ///< are covered
 };
 
-/// One for each class, those of one load one after the other.
-using MeasuredErrors = std::array<std::array<MeasuredError, sample_sizes.size()>, load_classes.size()>;
+/// Of one class of load, in the order of sample_sizes.
+using ErrorsBySize = std::array<MeasuredError, sample_sizes.size()>;
+/// In the order of load_classes.
+using MeasuredErrors = std::array<ErrorsBySize, load_classes.size()>;
 
 /// The file as it was built into the program.
 [[nodiscard]] std::string_view measured_errors_csv();

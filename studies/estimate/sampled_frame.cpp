@@ -10,9 +10,14 @@ SampledFrame::SampledFrame(std::uint32_t width, std::uint32_t height, Trace trac
       traced_(width, height),
       pixels_(static_cast<double>(width) * height) {}
 
-processors::program::PixelSet SampledFrame::set_with(const PacketWindows& windows) const {
+processors::program::PixelSet SampledFrame::set_with_lattice() const {
   processors::program::PixelSet set = traced_;
   lattice_.add_to(set);
+  return set;
+}
+
+processors::program::PixelSet SampledFrame::set_with(const PacketWindows& windows) const {
+  processors::program::PixelSet set = set_with_lattice();
   windows.add_to(set);
   return set;
 }
@@ -27,9 +32,7 @@ TracedPart SampledFrame::traced() const {
 }
 
 const processors::program::WorkLog& SampledFrame::with_lattice() {
-  processors::program::PixelSet set = traced_;
-  lattice_.add_to(set);
-  trace(set);
+  trace(set_with_lattice());
   return *frame_->log;
 }
 

@@ -44,6 +44,7 @@ class SampledFrame {
   [[nodiscard]] processors::program::Frame whole() &&;
 
  private:
+  [[nodiscard]] processors::program::PixelSet set_with_lattice() const;
   [[nodiscard]] processors::program::PixelSet set_with(const PacketWindows& windows) const;
   void trace(const processors::program::PixelSet& wanted);
 

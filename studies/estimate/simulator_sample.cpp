@@ -117,7 +117,7 @@ LatticeWork::LatticeWork(const processors::program::WorkLog& log,
   std::vector<double> times;
   std::vector<double> misses;
   for (const processors::passes::PixelFigures& pixel :
-       processors::passes::pixel_figures(log, machine, lattice.pixels(), &visits)) {
+       processors::passes::pixel_figures(log, machine, lattice.pixels(), visits)) {
     of_pixels_.push_back({static_cast<double>(pixel.hit_time), expected_misses(pixel)});
     times.push_back(of_pixels_.back().hit_time);
     misses.push_back(of_pixels_.back().misses);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -98,8 +97,8 @@ class Sampling {
         errors_(parse_measured_errors(measured_errors_csv())) {}
 
   WithinAnswer answer() {
-    double least = least_allowance(errors_[0]);
-    for (const auto& load : errors_) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const ErrorsBySize& load : errors_) {
       least = std::min(least, least_allowance(load));
     }
     if (least >= tolerance_) {
@@ -109,14 +108,23 @@ class Sampling {
       return {std::nullopt, std::move(reason)};
     }
     for (;;) {
-      WithinAnswer answer = attempt(drawn(strata_));
-      if (answer.estimate || !answer.reason.empty()) {
-        return answer;
+      const PacketWindows windows = drawn(strata_);
+      const Attempt attempt = attempted(windows);
+      if (attempt.run) {
+        return {attempt.run, ""};
+      }
+      double wanted = 0.0;
+      for (const Need& need : attempt.needs) {
+        const Enlarged enlarged = enlarge(windows, attempt, need);
+        if (!enlarged.refusal.empty()) {
+          return {std::nullopt, enlarged.refusal};
+        }
+        wanted = std::max(wanted, enlarged.windows);
       }
       // The number of strata doubles, so that all that was drawn is drawn again.
       do {
         strata_ *= 2;
-      } while (2.0 * static_cast<double>(strata_) < 0.99 * wanted_windows_);
+      } while (2.0 * static_cast<double>(strata_) < 0.99 * wanted);
       if (const double share = share_of(strata_); share > most_share) {
         return {std::nullopt,
                 fmt::format("a larger sample would trace {:.0f} % of the pixels and replay its packets again",
@@ -126,12 +134,31 @@ class Sampling {
   }
 
  private:
+  // A figure that a sample does not say narrowly enough, or whose width is not known yet.
+  struct Need {
+    Figure figure;
+    double half_width;  // the sample's own
+    double lattice;     // the lattice's part of it, which stays
+  };
+  // What one sample has given: the answer, or what a larger sample is to lessen.
+  struct Attempt {
+    std::optional<EstimatedRun> run{};
+    std::vector<Need> needs{};
+    std::size_t load = 0;       // class
+    std::uint64_t degrees = 0;  // of freedom
+  };
+  // The fewest windows that are expected to suffice; or why an exact run is cheaper.
+  struct Enlarged {
+    double windows = 0.0;
+    std::string refusal{};
+  };
+
   [[nodiscard]] PacketWindows drawn(std::uint64_t strata) const {
     return {packets_, window_length(nodes_), strata, seed_};
   }
 
-  [[nodiscard]] double least_allowance(const std::array<MeasuredError, sample_sizes.size()>& load) const {
-    double least = width_of(load[0].allowance, nodes_);
+  [[nodiscard]] double least_allowance(const ErrorsBySize& load) const {
+    double least = std::numeric_limits<double>::infinity();
     for (const MeasuredError& error : load) {
       least = std::min(least, width_of(error.allowance, nodes_));
     }
@@ -156,7 +183,8 @@ class Sampling {
                        100.0 * share);
   }
 
-  // Sets the strata of the first sample; or gives the reason why there is none.
+  // Sets strata_ for the first sample and returns an empty text. If an exact run is cheaper than any sample,
+  // returns the reason.
   std::string begin() {
     strata_ = least_windows / 2;
     const double share = share_of(strata_);
@@ -167,7 +195,7 @@ class Sampling {
       return "";
     }
     work_.emplace(frame_.with_lattice(), machine_, frame_.lattice(), packets_, visits_);
-    const auto& errors = errors_[load_class_of(work_->expected_use(machine_))];
+    const ErrorsBySize& errors = errors_[load_class_of(work_->expected_use(machine_))];
     if (width_of(errors[0].allowance, nodes_) < likely_share_of_tolerance * tolerance_) {
       return "";
     }
@@ -181,86 +209,72 @@ class Sampling {
     return not_known(least_allowance(errors));
   }
 
-  // An estimate; or the reason why there is none; or neither, and wanted_windows_.
-  WithinAnswer attempt(const PacketWindows& windows) {
+  // Traces and times a sample.
+  Attempt attempted(const PacketWindows& windows) {
     const processors::program::WorkLog& log = frame_.with(windows);
     if (!work_) {
       work_.emplace(log, machine_, frame_.lattice(), packets_, visits_);
     }
     const SampledMachine sampled = sample_machine(log, machine_, windows, *work_, visits_);
-    const auto& errors = errors_[load_class_of(sampled.estimate.value[Figure::use])];
+    Attempt attempt;
+    attempt.load = load_class_of(sampled.estimate.value[Figure::use]);
+    attempt.degrees = sampled.degrees;
+    attempt.needs = {{Figure::end, sampled.estimate.half_width[Figure::end], sampled.lattice}};
     const std::uint64_t count = windows.strata().size() * 2;
-    const bool small = count < least_windows;
-    std::vector<Need> needs = {{Figure::end, sampled.estimate.half_width[Figure::end], sampled.lattice}};
+    const MeasuredError* const error =
+        count < least_windows ? nullptr : &errors_[attempt.load][size_class_of(count)];
     const auto narrow = [&](const Need& need) {
-      return !small && need.half_width + errors[size_class_of(count)].allowance[need.figure] <= tolerance_;
+      return error != nullptr && need.half_width + error->allowance[need.figure] <= tolerance_;
     };
+    const bool end_narrow = narrow(attempt.needs[0]);
     // One node is timed only where it takes little time, or may be all that is missing.
-    if (small || narrow(needs[0])) {
-      EstimatedRun run = with_one_node(sampled, log, windows);
-      Estimate& machine = run.sampled.machine;
-      needs.push_back(
+    if (error != nullptr && !end_narrow) {
+      return attempt;
+    }
+    EstimatedRun run = with_one_node(sampled, log, windows);
+    Estimate& machine = run.sampled.machine;
+    if (nodes_ > 1) {
+      attempt.needs.push_back(
           {Figure::speed_up, machine.half_width[Figure::speed_up], run.sampled.lattice[Figure::speed_up]});
-      if (narrow(needs[0]) && (nodes_ == 1 || narrow(needs[1]))) {
-        const MeasuredError& error = errors[size_class_of(count)];
-        const double one_use = run.sampled.one_node.value[Figure::use];
-        widen(machine, error.allowance, nodes_);
-        widen(run.sampled.one_node, errors_[load_class_of(one_use)][size_class_of(count)].allowance, 1);
-        run.use_to = error.use_to;
-        return {run, ""};
-      }
-      if (nodes_ == 1) {
-        needs.pop_back();
-      }
     }
-    wanted_windows_ = 0.0;
-    for (const Need& need : needs) {
-      if (std::string reason = enlarge(windows, sampled.degrees, errors, need); !reason.empty()) {
-        return {std::nullopt, std::move(reason)};
-      }
+    if (end_narrow && narrow(attempt.needs.back())) {
+      const std::size_t one_load = load_class_of(run.sampled.one_node.value[Figure::use]);
+      widen(machine, error->allowance, nodes_);
+      widen(run.sampled.one_node, errors_[one_load][size_class_of(count)].allowance, 1);
+      run.use_to = error->use_to;
+      attempt.run = run;
     }
-    return {};
+    return attempt;
   }
 
-  // What a larger sample is to lessen.
-  struct Need {
-    Figure figure;
-    double half_width;  // the sample's own
-    double lattice;     // the lattice's part of it, which stays
-  };
-
-  // Raises wanted_windows_ to the fewest windows that are expected to suffice for one figure; else gives the
-  // reason why an exact run is cheaper.
-  std::string enlarge(const PacketWindows& windows, std::uint64_t degrees,
-                      const std::array<MeasuredError, sample_sizes.size()>& errors, const Need& need) {
+  [[nodiscard]] Enlarged enlarge(const PacketWindows& windows, const Attempt& attempt,
+                                 const Need& need) const {
+    const ErrorsBySize& errors = errors_[attempt.load];
     const auto all = static_cast<double>(windows.windows());
-    const auto now = static_cast<double>(windows.strata().size() * 2);
+    const std::uint64_t now = windows.strata().size() * 2;
     double least_error = std::numeric_limits<double>::infinity();
     double wanted = 0.0;
-    for (std::size_t size = 0; size < errors.size(); ++size) {
-      const double above = size + 1 < errors.size() ? static_cast<double>(sample_sizes[size + 1]) : 2.0 * all;
-      const double left = tolerance_ - errors[size].allowance[need.figure];
-      if (now < above) {
-        least_error = std::min(least_error, tolerance_ - left);
-      }
-      if (now >= above || left <= need.lattice) {
+    for (std::size_t size = size_class_of(std::max(now, least_windows)); size < errors.size(); ++size) {
+      const double allowance = errors[size].allowance[need.figure];
+      least_error = std::min(least_error, allowance);
+      if (tolerance_ - allowance <= need.lattice) {
         continue;
       }
-      wanted = std::max(share_for(windows, degrees, need.lattice, need.half_width, left) * all,
-                        static_cast<double>(sample_sizes[size]));
-      if (wanted < above) {
+      wanted = std::max(
+          share_for(windows, attempt.degrees, need.lattice, need.half_width, tolerance_ - allowance) * all,
+          static_cast<double>(sample_sizes[size]));
+      if (size + 1 < errors.size() && wanted < static_cast<double>(sample_sizes[size + 1])) {
         break;
       }
     }
     if (wanted == 0.0) {
-      return not_known(least_error + need.lattice);
+      return {0.0, not_known(least_error + need.lattice)};
     }
     if (wanted > most_share * all) {
-      return fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
-                         std::min(100.0, 100.0 * wanted / all));
+      return {0.0, fmt::format("a sample that is large enough would trace {:.0f} % of the pixels",
+                               std::min(100.0, 100.0 * wanted / all))};
     }
-    wanted_windows_ = std::max(wanted_windows_, wanted);
-    return "";
+    return {wanted, ""};
   }
 
   // The answer of a sample whose frame time is known well enough.
@@ -289,7 +303,6 @@ class Sampling {
   std::optional<LatticeWork> work_;  // empty before the lattice is traced
   processors::walk::KeptVisits visits_;
   std::uint64_t strata_ = 0;  // of the next sample
-  double wanted_windows_ = 0.0;
 };
 
 }  // namespace
