@@ -137,11 +137,11 @@ int main(int argc, char** argv) {
   Score score;
   Costs all;
   std::uint64_t seed = 0;
-  std::vector<const char*> scenes(argv + std::min(argc, 5), argv + argc);
-  if (scenes.empty()) {
-    scenes = {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"};
-  }
-  for (const char* scene : scenes) {
+  constexpr std::array all_scenes = {"teapot:12", "gears:4", "tree:8", "mount:6", "rings:5", "balls:4"};
+  const std::vector<std::string> scenes =
+      argc > 5 ? std::vector<std::string>(argv + 5, argv + argc)
+               : std::vector<std::string>(all_scenes.begin(), all_scenes.end());
+  for (const std::string& scene : scenes) {
     studies::keys::FrameConfig frame;
     frame.scene = scene;
     frame.structure = "octree";
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
     frame.render.height = side;
     frame.render.max_depth = 2;
     frame.memory = sim::MemoryBudget(std::uint64_t{1} << 33U);
-    std::printf("%s, %u x %u, within %g %%\n", scene, side, side, 100.0 * tolerance);
+    std::printf("%s, %u x %u, within %g %%\n", scene.c_str(), side, side, 100.0 * tolerance);
     processors::machine::MachineConfig full = default_machine();
     full.cache.cache = {.size = 4096, .line = 32, .ways = 1};
     for (const processors::machine::MachineConfig& machine : {default_machine(), full}) {
