@@ -84,7 +84,7 @@ Sweep make_sweep(std::size_t machines) {
     if (sweep.rows.size() < different) {
       sweep.rows.push_back(studies::sweep::sweep_row(machine, processors::replay::replay(*log, machine)));
     }
-    sweep.plan.machines.push_back({key_of(i), 0, machine, pool.share(of_machine)});
+    sweep.plan.machines.push_back({key_of(i), 0, i, machine, pool.share(of_machine)});
     sweep.plan.points.push_back({{nodes, size, static_cast<std::int64_t>(i / 42)}, i, 0, 1.0});
   }
   return sweep;

@@ -1,5 +1,6 @@
-// What a sweep saves: its machines beside the same machines each in a `marti run` of its own, in processor
-// time; one thread against two; a finished sweep of 10,000 points opened again.
+// What a sweep saves: its machines beside the same machines each in a `marti run` of its own and beside the
+// native render of the frame, in processor time; one thread against two; a finished sweep of 10,000 points
+// opened again.
 //   bench_sweep [SIZE [RUNS [CONFIG]]]     default: 256, 20, configs/sweep.toml
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,12 +13,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "accel/structure.h"
+#include "accel/triangles.h"
 #include "bench/report.h"
+#include "processors/program/render.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/host/cpu_time.h"
+#include "studies/run/open_frame.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -79,6 +87,24 @@ class Scratch {
   std::filesystem::path directory_;
 };
 
+// Milliseconds of processor time that the frame takes to render on one thread, without a work log; the least
+// of five.
+double native_render(const studies::keys::FrameConfig& config) {
+  const scenes::Scene scene = studies::run::open_frame(config);
+  const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+  const std::unique_ptr<accel::Structure> structure =
+      accel::make_structure(config.structure, triangles, config.structure_options);
+  processors::program::RenderOptions options = config.render;
+  options.record = false;
+  double least = std::numeric_limits<double>::max();
+  for (int i = 0; i < 5; ++i) {
+    const double begin = studies::host::process_cpu_seconds();
+    (void)processors::program::render(scene, *triangles, *structure, options, 1);
+    least = std::min(least, studies::host::process_cpu_seconds() - begin);
+  }
+  return 1e3 * least;
+}
+
 // Line references of all points of a store.
 double references_in(const std::filesystem::path& store) {
   const studies::sweep::SweepReader reader(store);
@@ -131,6 +157,9 @@ void compare_with_runs(bench::Report& report, const std::string& config, const s
   std::printf("a machine in a run of its own   %9.1f ms of processor time (mean of %d)\n", separate.cpu * 1e3,
               runs);
   std::printf("a machine of the sweep          %9.1f ms\n", one.cpu / machines * 1e3);
+  const double render = native_render(plan.frames.front().config);
+  std::printf("native render of the frame      %9.1f ms: a machine takes %.2f times that\n", render,
+              one.cpu / machines * 1e3 / render);
   std::printf("references                      %9.1f M/s a core, all of the sweep's time counted\n",
               references / one.cpu * 1e-6);
   std::printf("one thread, two threads         %9.1f s, %.1f s: efficiency %.2f\n", one.wall, two.wall,
@@ -139,6 +168,8 @@ void compare_with_runs(bench::Report& report, const std::string& config, const s
   std::printf("store                           %9.0f B a machine\n", bytes);
   report.add(bench::against("separate runs / sweep, a machine", "ms CPU", separate.cpu * 1e3, "sweep",
                             one.cpu / machines * 1e3, bench::Aim{20.0, true}));
+  report.add(bench::against("a machine of the sweep", "ms CPU", one.cpu / machines * 1e3, "native render",
+                            render, bench::Aim{0.6, false}));
   report.add({.name = "references of a sweep",
               .unit = "M/s a core",
               .ours = references / one.cpu * 1e-6,

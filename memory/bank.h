@@ -70,16 +70,12 @@ class Banks {
   ~Banks();
 
   [[nodiscard]] std::uint32_t bank_of(Address address) const {
-    if (channels_) {
-      return channel_of(address);
-    }
-    const Address unit = address >> interleave_shift_;
-    return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
+    return channels_ ? channel_of(address) : fixed_bank_of(address);
   }
   /// A read or write whose address arrives at `arrival`, at the cache if there is one, else at its bank.
   /// Calls must come in order of arrival.
   [[gnu::always_inline]] BankAccess read(Address address, std::uint32_t bytes, sim::Ticks arrival) {
-    return fixed_only_ ? access(bank_of(address), arrival) : read_otherwise(address, bytes, arrival);
+    return fixed_only_ ? access(fixed_bank_of(address), arrival) : read_otherwise(address, bytes, arrival);
   }
   BankAccess write(Address address, std::uint32_t bytes, sim::Ticks arrival) {
     return dram_ ? access_dram(address, bytes, true, arrival) : access(bank_of(address), arrival);
@@ -109,6 +105,11 @@ class Banks {
 
  private:
   [[nodiscard]] std::uint32_t channel_of(Address address) const;
+  // Without DRAM.
+  [[nodiscard]] [[gnu::always_inline]] std::uint32_t fixed_bank_of(Address address) const {
+    const Address unit = address >> interleave_shift_;
+    return static_cast<std::uint32_t>((count_ & (count_ - 1)) == 0 ? unit & (count_ - 1) : unit % count_);
+  }
   BankAccess read_otherwise(Address address, std::uint32_t bytes, sim::Ticks arrival);
   BankAccess access_dram(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival);
 

@@ -25,9 +25,6 @@ class EventHandler {
 class Engine {
  public:
   static constexpr std::size_t max_classes = 16;
-  /// With more pending events than this, handlers are asked to prepare for the next ones.
-  static constexpr std::size_t many_pending = 2048;
-
   /// All events of `event_class` (below max_classes) go to `handler`. Lower classes come first at equal
   /// times.
   void attach(std::uint8_t event_class, EventHandler& handler) { handlers_.at(event_class) = &handler; }
@@ -69,7 +66,7 @@ class Engine {
   // Has handlers prepare for the events that are likely to be next, if many are pending.
   template <class Prepare>
   void look_ahead(const Prepare& prepare) const {
-    if (queue_.size() > many_pending) [[unlikely]] {
+    if (queue_.many_pending()) [[unlikely]] {
       queue_.each_likely_next(prepare);
     }
   }
@@ -93,13 +90,15 @@ void Engine::run_all(Handler& handler) {
     }
   }
   const auto prepare = [&handler](const Event& next) { handler.prepare(next); };
-  for (; !queue_.empty(); ++events) {
+  for (;; ++events) {
     // The two kinds are handled apart, because which comes next is not predictable and costs a branch here.
     if (queue_.next_is_in_order()) {
       const Event event = queue_.pop_in_order();
       now_ = event.time;
       look_ahead(prepare);
       handler.handle_in_order(event);
+    } else if (queue_.has_no_other()) [[unlikely]] {
+      break;
     } else {
       const Event event = queue_.pop_other();
       now_ = event.time;

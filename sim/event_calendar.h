@@ -20,7 +20,7 @@ class EventCalendar {
   static constexpr std::uint32_t most_days = NumberSet::most;
 
   /// `days` is a power of two, at most most_days.
-  explicit EventCalendar(std::uint32_t days) : days_(days), busy_(days) {}
+  explicit EventCalendar(std::uint32_t days) : days_(days), mask_(days - 1), busy_(days) {}
 
   static constexpr std::size_t bytes_a_day = 24;
   /// Bytes of host memory for each event that shares its day with others; tables grow by doubling.
@@ -30,7 +30,7 @@ class EventCalendar {
   /// The earliest event, or Event::never() while the calendar is empty.
   [[nodiscard]] Event front() const { return days_[first_].event; }
   [[nodiscard]] unsigned shift() const { return shift_; }
-  [[nodiscard]] std::uint32_t days() const { return static_cast<std::uint32_t>(days_.size()); }
+  [[nodiscard]] std::uint32_t days() const { return mask_ + 1; }
 
   /// Changes the length of a day to 2^shift ticks. The calendar must be empty.
   void set_shift(unsigned shift) { shift_ = shift; }
@@ -40,7 +40,7 @@ class EventCalendar {
   [[gnu::always_inline]] bool push(Event event, Ticks now) {
     const std::uint64_t ahead =
         (static_cast<std::uint64_t>(event.time) >> shift_) - (static_cast<std::uint64_t>(now) >> shift_);
-    if (ahead >= days_.size()) [[unlikely]] {
+    if (ahead > mask_) [[unlikely]] {
       return false;
     }
     const std::uint32_t day = day_of(event.time);
@@ -95,7 +95,7 @@ class EventCalendar {
   static_assert(sizeof(Entry) == bytes_a_day);
 
   [[nodiscard]] std::uint32_t day_of(Ticks time) const {
-    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(time) >> shift_) & (days() - 1U);
+    return static_cast<std::uint32_t>(static_cast<std::uint64_t>(time) >> shift_) & mask_;
   }
 
   bool push_into_list(Entry& day, Event event) {
@@ -130,6 +130,7 @@ class EventCalendar {
   }
 
   LargeVector<Entry> days_;     // the first event of each open day; day d stands at d modulo their number
+  std::uint32_t mask_;          // number of days less 1
   NumberSet busy_;              // the days that have events
   LargeVector<Entry> entries_;  // further events
   std::uint32_t free_ = none;

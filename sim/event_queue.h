@@ -69,6 +69,12 @@ class EventQueue {
   /// push_in_order(); some of those, which came too far out of order, are elsewhere.
   [[nodiscard]] bool next_is_in_order() const { return lane_.front() < first_; }
 
+  /// Whether no event is pending where not next_is_in_tree() and not next_is_in_order().
+  [[nodiscard]] bool has_no_other() const { return first_.order == Event::never().order; }
+  /// Whether so many events are pending that the host's caches may not hold all that belongs to them. Those
+  /// of the heap, of which there are few, are not counted.
+  [[nodiscard]] bool many_pending() const { return lane_.size() + calendar_.size() > many; }
+
   /// Calls visit(event) for a few events that may be next unless an earlier one is pushed.
   template <class Visit>
   void each_likely_next(const Visit& visit) const {
@@ -109,6 +115,7 @@ class EventQueue {
   }
 
  private:
+  static constexpr std::size_t many = 2048;
   static constexpr std::uint32_t fewest_days = 256;
   static constexpr std::uint64_t tuned_after = 1024;  // pushed events
 

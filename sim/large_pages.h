@@ -2,12 +2,16 @@
 // for large pages. Where there are none it is ordinary memory.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <new>
+#include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #ifdef __linux__
@@ -55,6 +59,32 @@ class LargePageAllocator {
 
 template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
+
+/// Copies of many arrays, one behind the other in blocks that are large enough for large pages: each array by
+/// itself would get ordinary ones, and the system takes time for every page.
+template <class T>
+class LargeBlocks {
+ public:
+  /// The copy of an array, which lives as long as the blocks. About so many arrays of its size are yet to
+  /// come, itself included.
+  std::span<const T> copy(std::span<const T> array, std::size_t to_come) {
+    if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < array.size()) {
+      constexpr std::size_t block = (std::size_t{2} << 20U) / sizeof(T);
+      blocks_.emplace_back().reserve(std::max(array.size(), std::min(block, array.size() * to_come)));
+    }
+    LargeVector<T>& block = blocks_.back();
+    block.insert(block.end(), array.begin(), array.end());
+    return std::span(block).last(array.size());
+  }
+  /// Takes the copies of `other`, which stay where they are.
+  void merge(LargeBlocks&& other) {
+    std::move(other.blocks_.begin(), other.blocks_.end(), std::back_inserter(blocks_));
+    other.blocks_.clear();
+  }
+
+ private:
+  std::vector<LargeVector<T>> blocks_;
+};
 
 /// A table of fixed size whose bytes are all 0 at first. What is never accessed takes no memory on Linux,
 /// where the system makes pages when they are touched.

@@ -95,10 +95,18 @@ void LogHistogram::merge(const LogHistogram& other) {
     buckets_.resize(other.buckets_.size());
   }
   for (std::size_t i = 0; i < other.buckets_.size(); ++i) {
-    buckets_[i] += other.buckets_[i];
+    ensure(!__builtin_add_overflow(buckets_[i], other.buckets_[i], &buckets_[i]),
+           "a count of samples overflowed");
   }
-  ensure(!__builtin_add_overflow(count_, other.count_, &count_), "a count of samples overflowed");
   maximum_ = std::max(maximum_, other.maximum_);
+}
+
+std::int64_t LogHistogram::count() const {
+  std::int64_t count = 0;
+  for (const std::int64_t bucket : buckets_) {
+    ensure(!__builtin_add_overflow(count, bucket, &count), "a count of samples overflowed");
+  }
+  return count;
 }
 
 void LogHistogram::fail_negative() { throw InternalError("a histogram takes no negative sample"); }
@@ -121,11 +129,12 @@ std::int64_t LogHistogram::highest_of(std::size_t bucket) {
 
 std::optional<std::int64_t> LogHistogram::percentile(double p) const {
   ensure(p > 0 && p <= 100, "a percentile lies above 0 and not above 100");
-  if (count_ == 0) {
+  const std::int64_t all = count();
+  if (all == 0) {
     return std::nullopt;
   }
-  const auto exact = std::ceil(static_cast<long double>(p) / 100 * static_cast<long double>(count_));
-  const auto rank = std::clamp<std::int64_t>(static_cast<std::int64_t>(exact), 1, count_);
+  const auto exact = std::ceil(static_cast<long double>(p) / 100 * static_cast<long double>(all));
+  const auto rank = std::clamp<std::int64_t>(static_cast<std::int64_t>(exact), 1, all);
   std::int64_t seen = 0;
   for (std::size_t i = 0; i < buckets_.size(); ++i) {
     seen += buckets_[i];

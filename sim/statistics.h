@@ -173,7 +173,6 @@ class LogHistogram {
       add_buckets(bucket + 1);
     }
     ++buckets_[bucket];
-    ++count_;
     maximum_ = std::max(maximum_, sample);
   }
   /// Adds a sample `times` times, at least 0.
@@ -183,11 +182,11 @@ class LogHistogram {
     }
     add(sample);
     buckets_[bucket_of(sample)] += times - 1;
-    count_ += times - 1;
   }
   void merge(const LogHistogram& other);
 
-  [[nodiscard]] std::int64_t count() const { return count_; }
+  /// The sum over all buckets, which is not kept. An InternalError when it does not fit in 64 bits.
+  [[nodiscard]] std::int64_t count() const;
   /// The largest sample, exact; zero if there are no samples.
   [[nodiscard]] std::int64_t maximum() const { return maximum_; }
   /// The p-th percentile by nearest rank, 0 < p <= 100: never below the exact value and at most 12.5 % above
@@ -221,7 +220,6 @@ class LogHistogram {
   [[gnu::noinline]] void add_buckets(std::size_t size) { buckets_.resize(size); }
 
   std::vector<std::int64_t> buckets_;  // up to the last non-empty one
-  std::int64_t count_ = 0;
   std::int64_t maximum_ = 0;
 };
 

@@ -160,7 +160,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
       walker_.finish_pixel(node, cursor, statistics);
     }
     watch(node, walk::NodeState::working, from);
-    constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
+    static constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
     post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
   }
 

@@ -200,10 +200,16 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
     check_sampled(config);
   }
   MachineResult result = replay_scheme(log, config, options);
+  work_out_energy(log, config, result);
+  return result;
+}
+
+void work_out_energy(const program::WorkLog& log, const machine::MachineConfig& config,
+                     MachineResult& result) {
+  result.energy.reset();
   if (config.energy.on()) {
     result.energy = energy::energy_of(config, energy_counts(log, config, result));
   }
-  return result;
 }
 
 }  // namespace marti::processors::replay

@@ -114,6 +114,11 @@ struct ReplayOptions {
 [[nodiscard]] MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& config,
                                    const ReplayOptions& options = {});
 
+/// Sets the energy of the result to that of `config`, which may differ in figures of energy from the machine
+/// that was replayed. Throws UserError when it does not fit.
+void work_out_energy(const program::WorkLog& log, const machine::MachineConfig& config,
+                     MachineResult& result);
+
 /// Throws UserError with the reason when some of the machine's packets cannot be replayed without the others.
 void check_sampled(const machine::MachineConfig& config);
 

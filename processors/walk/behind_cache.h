@@ -32,7 +32,7 @@ class BehindCache {
   /// `division`.
   bool second_level_holds(std::uint32_t node, std::uint32_t line, sim::Ticks& time,
                           cost::TimeDivision& division) {
-    return second_level_.access(node, line, time, division);
+    return second_level_.present() && second_level_.access(node, line, time, division);
   }
 
   /// See PrivateSecondLevel::hit.

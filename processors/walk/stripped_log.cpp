@@ -60,13 +60,19 @@ class StrippedLog::BandWriter {
     const std::size_t bytes = words_.size() * sizeof(words_[0]) + at_end_.size() * sizeof(at_end_[0]);
     return static_cast<std::int64_t>(bytes - std::exchange(bytes_, bytes));
   }
-  // The words are written into tables that are kept from band to band, and copied at their exact size.
-  void end_band(bool fits) {
+  // The words are written into tables that are kept from band to band, and copied at their exact size. There
+  // are so many bands in all.
+  void end_band(bool fits, std::size_t bands) {
     band_->fits = fits && excess_ == 0;
     if (band_->fits) {
-      band_->words.assign(words_.begin(), words_.end());
-      band_->at_end.assign(at_end_.begin(), at_end_.end());
+      band_->words = all_words_.copy(words_, bands);
+      band_->at_end = all_at_end_.copy(at_end_, bands);
     }
+  }
+  /// Gives the log the words of all its bands that were written here.
+  void give_words(StrippedLog& log) {
+    log.words_.merge(std::move(all_words_));
+    log.at_end_.merge(std::move(all_at_end_));
   }
 
  private:
@@ -77,8 +83,10 @@ class StrippedLog::BandWriter {
 
   std::uint32_t ways_;
   Band* band_ = nullptr;
-  std::vector<std::uint64_t> words_;
-  std::vector<std::uint32_t> at_end_;
+  sim::LargeVector<std::uint64_t> words_;  // of this band
+  sim::LargeVector<std::uint32_t> at_end_;
+  sim::LargeBlocks<std::uint64_t> all_words_;  // of all bands
+  sim::LargeBlocks<std::uint32_t> all_at_end_;
   sim::Ticks since_ = 0;      // the end of the last reference that was kept
   std::uint64_t excess_ = 0;  // not 0 once something has not fitted into 32 bits
   std::size_t bytes_ = 0;
@@ -257,7 +265,13 @@ class StrippedLog::Stripper {
       x0 = x1;
     }
     for (BandWriter& writer : caches.writers) {
-      writer.end_band(fits);
+      writer.end_band(fits, logs[0]->bands_.size());
+    }
+  }
+
+  void give_words(std::span<const std::shared_ptr<StrippedLog>> logs) {
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      walker_.caches().writers[i].give_words(*logs[i]);
     }
   }
 
@@ -341,6 +355,9 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program:
           strippers.local().strip(static_cast<std::uint32_t>(number), logs, (*totals)[number]);
         }
       });
+      for (Stripper<Caches>& stripper : strippers) {
+        stripper.give_words(logs);
+      }
     };
     const std::uint32_t deepest = *std::max_element(ways.begin(), ways.end());
     if (config.cache.organisation == machine::CacheOrganisation::split) {

@@ -38,6 +38,7 @@
 #include "processors/cost/accounting.h"
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "sim/large_pages.h"
 #include "sim/work_meter.h"
 
 namespace marti::processors::walk {
@@ -96,8 +97,8 @@ class StrippedLog {
     const std::size_t number = x / packet_width_;
     const Place& place = band.places[number];
     const Place& next = band.places[number + 1];
-    return {std::span(band.words).subspan(place.word, next.word - place.word),
-            std::span(band.at_end).subspan(place.at_end, next.at_end - place.at_end),
+    return {band.words.subspan(place.word, next.word - place.word),
+            band.at_end.subspan(place.at_end, next.at_end - place.at_end),
             (*totals_)[y / packet_height_][number]};
   }
 
@@ -123,8 +124,8 @@ class StrippedLog {
   };
   // One row of packets, written by one thread.
   struct Band {
-    std::vector<std::uint64_t> words;
-    std::vector<std::uint32_t> at_end;
+    std::span<const std::uint64_t> words;
+    std::span<const std::uint32_t> at_end;
     std::vector<Place> places = std::vector<Place>(1);  // where each packet begins, and one past the last
     bool fits = true;
   };
@@ -153,6 +154,8 @@ class StrippedLog {
   std::uint32_t packet_width_;
   std::uint32_t packet_height_;
   std::vector<Band> bands_;
+  sim::LargeBlocks<std::uint64_t> words_;   // of all bands
+  sim::LargeBlocks<std::uint32_t> at_end_;  // of all bands
   std::shared_ptr<const Totals> totals_;
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -77,11 +78,14 @@ class Sampling {
     }
     MachinesEstimate all;
     all.of_frame.resize(plan_.frames.size());
+    std::set<std::size_t> replayed;
     for (const std::size_t number : machines_) {
       const std::size_t frame = plan_.machines[number].frame;
       all.of_frame[frame] = fixed_seconds_ / static_cast<double>(timed_) +
                             growing_seconds_ / growing_bytes_ * frame_of_(frame).log_bytes;
-      all.timing += all.of_frame[frame];
+      if (replayed.insert(plan_.machines[number].timing).second) {
+        all.timing += all.of_frame[frame];
+      }
     }
     for (const MachineBatch& batch : batches_) {
       if (pays(batch) && stripped_bytes_ > 0.0) {

@@ -29,13 +29,19 @@ std::string digest_of(const SweepPlan& plan) {
 
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
-  Digest digest;
-  digest.add(frames_[frame].key);
-  digest.add(read.machine_digest);
-  std::string key = digest.hex();
+  const auto on_frame = [&](const std::string& machine) {
+    Digest digest;
+    digest.add(frames_[frame].key);
+    digest.add(machine);
+    return digest.hex();
+  };
+  std::string key = on_frame(read.machine_digest);
   const auto [place, fresh] = machine_of_key_.emplace(key, machines_.size());
   if (fresh) {
-    machines_.push_back({std::move(key), frame, read.machine, settings_.share(std::move(read.settings))});
+    const std::size_t timing =
+        timing_of_key_.emplace(on_frame(read.timing_digest), timing_of_key_.size()).first->second;
+    machines_.push_back(
+        {std::move(key), frame, timing, read.machine, settings_.share(std::move(read.settings))});
     first_point_.push_back(no_point);
   }
   return place->second;

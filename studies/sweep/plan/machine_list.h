@@ -37,6 +37,7 @@ class MachineList {
   std::vector<std::size_t> first_point_;  // that asks for the machine, or no_point
   std::unordered_map<std::string, std::size_t> frame_of_digest_;
   std::unordered_map<std::string, std::size_t> machine_of_key_;
+  std::unordered_map<std::string, std::size_t> timing_of_key_;
 };
 
 }  // namespace marti::studies::sweep

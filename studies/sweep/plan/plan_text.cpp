@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/tables/text_units.h"
@@ -67,6 +68,13 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   if (of_points < plan.machines.size()) {
     machines += fmt::format(" ({} of points, {} to measure them against)", number(of_points),
                             number(plan.machines.size() - of_points));
+  }
+  std::set<std::size_t> replays;
+  for (const SweepMachine& machine : plan.machines) {
+    replays.insert(machine.timing);
+  }
+  if (replays.size() < plan.machines.size()) {
+    machines += fmt::format(" in {} replays", number(replays.size()));
   }
   line("machines", machines + fmt::format(", {} done", number(outlook.machines_done)));
 

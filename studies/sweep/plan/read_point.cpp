@@ -40,6 +40,27 @@ sim::EffectiveValue effective(const sim::Config& config, std::size_t key) {
           config.where(declared.name)};
 }
 
+// Adds what a setting says about times and counts: nothing if it is about energy. An interconnect's width
+// decides how many beats its transfers take. Where these are whole lines and pixels, machines with equal
+// beats take equal times.
+void add_timing(Digest& digest, const sim::EffectiveValue& setting,
+                const processors::machine::MachineConfig& machine) {
+  using namespace processors::machine;
+  if (setting.key.starts_with("energy.")) {
+    return;
+  }
+  if (setting.key == "interconnect.width" && machine.cache.organisation != CacheOrganisation::none &&
+      machine.build.sharing == Sharing::given) {
+    const auto beats = [&](std::uint32_t bytes) {
+      return std::to_string((std::uint64_t{bytes} + machine.interconnect.width - 1) /
+                            machine.interconnect.width);
+    };
+    add(digest, "beats", beats(machine.cache.cache.line) + " " + beats(machine.layout.pixel_bytes));
+  } else {
+    add(digest, setting.key, setting.value);
+  }
+}
+
 void set(sim::Config& config, std::string_view key, sim::Value value) {
   config.set({*config.schema().find(key), {std::move(value)}, 0, "the machine of one node"});
 }
@@ -47,7 +68,7 @@ void set(sim::Config& config, std::string_view key, sim::Value value) {
 }  // namespace
 
 ReadPoint read_point(sim::Config config) {
-  ReadPoint point{std::move(config), {}, {}, {}, {}, {}, {}};
+  ReadPoint point{std::move(config), {}, {}, {}, {}, {}, {}, {}};
   const std::vector<sim::Key>::size_type keys = point.config.schema().keys().size();
   point.frame = keys::read_frame(point.config);
   run::refuse_several_frames(point.config, point.frame.frames);
@@ -57,6 +78,7 @@ ReadPoint read_point(sim::Config config) {
 
   Digest frame;
   Digest machine;
+  Digest timing;
   const std::vector<bool> used = keys_read(point.config);
   point.settings.reserve(
       static_cast<std::size_t>(std::count(used.begin(), used.end(), true) -
@@ -70,10 +92,12 @@ ReadPoint read_point(sim::Config config) {
     } else if (point.config.used_at(key)) {
       point.settings.push_back(effective(point.config, key));
       add(machine, declared.name, point.settings.back().value);
+      add_timing(timing, point.settings.back(), point.machine);
     }
   }
   point.frame_digest = frame.hex();
   point.machine_digest = machine.hex();
+  point.timing_digest = timing.hex();
   return point;
 }
 

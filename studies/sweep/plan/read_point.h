@@ -19,6 +19,7 @@ struct ReadPoint {
   std::vector<bool> frame_keys;  ///< for each key of the schema: has the frame read it?
   processors::machine::MachineConfig machine;
   std::string machine_digest;                 ///< digest of the keys that only the machine has read
+  std::string timing_digest;                  ///< digest of what of these decides times and counts
   std::vector<sim::EffectiveValue> settings;  ///< these keys and values, in the order of the schema
 };
 

@@ -25,10 +25,13 @@ struct SweepFrame {
   std::optional<std::uint64_t> scene_hash{};
 };
 
-/// One machine on one frame. A machine is timed once, however many points ask for it.
+/// One machine on one frame. It is replayed once, however many points ask for it.
 struct SweepMachine {
   std::string key;        ///< 32 hexadecimal digits of the frame's key and the machine's settings
   std::size_t frame = 0;  ///< index into SweepPlan::frames
+  /// Machines with equal numbers take equal times and counts and need one replay for all of them: they differ
+  /// only in figures of energy, or in widths of the interconnect that move a line in as many beats.
+  std::size_t timing = 0;
   processors::machine::MachineConfig config;
   SharedSettings settings;  ///< the machine's keys only
 };

@@ -27,6 +27,10 @@ std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std:
       batch.ways.insert(place, ways);
     }
   }
+  const auto timing = [&](std::size_t machine) { return plan.machines[machine].timing; };
+  for (MachineBatch& batch : batches) {
+    std::ranges::stable_sort(batch.machines, {}, timing);
+  }
   return batches;
 }
 

@@ -14,12 +14,14 @@ namespace marti::studies::sweep {
 /// Machines of one frame with one StrippedLog::key_of.
 struct MachineBatch {
   std::size_t frame = 0;
-  std::string key;                    ///< empty: their log cannot be stripped
-  std::vector<std::size_t> machines;  ///< indices into SweepPlan::machines
-  std::vector<std::uint32_t> ways;    ///< of the stripped logs of all of them, ascending
+  std::string key;  ///< empty: their log cannot be stripped
+  std::vector<std::size_t>
+      machines;                     ///< indices into SweepPlan::machines; those of one timing stand together
+  std::vector<std::uint32_t> ways;  ///< of the stripped logs of all of them, ascending
 };
 
-/// `machines` of the plan, sorted into batches; those of a batch are in the order of `machines`.
+/// `machines` of the plan, sorted into batches; those of a batch, and of one timing, are in the order of
+/// `machines`.
 [[nodiscard]] std::vector<MachineBatch> batches_of(const SweepPlan& plan,
                                                    std::span<const std::size_t> machines);
 

@@ -10,7 +10,10 @@ namespace marti::studies::sweep {
 
 Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
                    const std::vector<bool>& frames_done, FrameCosts estimated)
-    : estimated_(std::move(estimated)), frames_(plan.frames.size()), batch_of_(plan.machines.size()) {
+    : plan_(plan),
+      estimated_(std::move(estimated)),
+      frames_(plan.frames.size()),
+      batch_of_(plan.machines.size()) {
   std::vector<std::size_t> left;
   for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
     if (!machines_done[machine]) {
@@ -122,12 +125,15 @@ SweepTask Schedule::next(std::size_t place, std::int64_t nanoseconds) {
   SweepTask task{SweepTask::Kind::time, batch.frame, {}, batch.size, batch.ways};
   const std::int64_t each = std::max<std::int64_t>(1, cost_of(batch));
   std::int64_t given = 0;
+  std::size_t timing = 0;
   do {
+    timing = plan_.machines[batch.machines.back()].timing;
     task.machines.push_back(batch.machines.back());
     batch.machines.pop_back();
     --frames_[batch.frame].to_hand_out;
     given += each;
-  } while (!batch.machines.empty() && batch.timed != 0 && given + each <= nanoseconds);
+  } while (!batch.machines.empty() && (plan_.machines[batch.machines.back()].timing == timing ||
+                                       (batch.timed != 0 && given + each <= nanoseconds)));
   return task;
 }
 

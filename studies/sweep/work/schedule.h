@@ -33,12 +33,14 @@ struct SweepTask {
 /// all machines, in the proportions that were estimated for their frames.
 class Schedule {
  public:
-  /// `machines_done` and `frames_done` as SweepStore gives them. A frame whose machines are all done is
-  /// traced only if its row is not there. `estimated`: only the proportions of its figures count.
+  /// The plan must outlive it. `machines_done` and `frames_done` as SweepStore gives them. A frame whose
+  /// machines are all done is traced only if its row is not there. `estimated`: only the proportions of its
+  /// figures count.
   Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done,
            const std::vector<bool>& frames_done, FrameCosts estimated = {});
 
-  /// The next task of `place`: machines that take about `nanoseconds` together, at least one.
+  /// The next task of `place`: machines that take about `nanoseconds` together, at least one, and with it the
+  /// others of its timing.
   [[nodiscard]] SweepTask next(std::size_t place, std::int64_t nanoseconds = 0);
 
   // Both are called when a task is done.
@@ -85,6 +87,7 @@ class Schedule {
   static std::int64_t share_of(const std::vector<double>& estimated, std::size_t frame, std::int64_t spent,
                                double estimated_of_done, std::int64_t done);
 
+  const SweepPlan& plan_;
   FrameCosts estimated_;
   std::vector<Frame> frames_;
   std::vector<Batch> batches_;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -65,23 +66,37 @@ std::string name_of(const SweepMachine& machine) {
   return name;
 }
 
+processors::replay::MachineResult replay(SweepSite& site, const SweepTask& task,
+                                         const std::shared_ptr<const processors::program::WorkLog>& log,
+                                         const processors::machine::MachineConfig& machine) {
+  const std::shared_ptr<const processors::walk::StrippedLog> stripped =
+      site.strips.get(task.frame, log, machine, task.sharing, task.ways);
+  const MemoryGate::Pass pass(site.machines, processors::replay::host_bytes(machine));
+  processors::replay::ReplayOptions options;
+  options.stripped = stripped.get();
+  // Rows count an event for each read, whatever the interconnect is.
+  options.keep_read_events = true;
+  return processors::replay::replay(*log, machine, options);
+}
+
 void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
   const std::shared_ptr<const FrameLog> log =
       site.logs.take(task.frame, [&] { return trace(site, site.plan.frames[task.frame]); });
+  std::optional<std::size_t> timing;  // of `result`
+  processors::replay::MachineResult result;
   for (const std::size_t number : task.machines) {
     const SweepMachine& machine = site.plan.machines[number];
     const std::int64_t begin = host::thread_cpu_nanoseconds();
     SweepRow row;
     try {
-      const std::shared_ptr<const processors::walk::StrippedLog> stripped =
-          site.strips.get(task.frame, log->log, machine.config, task.sharing, task.ways);
-      const MemoryGate::Pass pass(site.machines, processors::replay::host_bytes(machine.config));
-      processors::replay::ReplayOptions options;
-      options.stripped = stripped.get();
-      // Rows count an event for each read, whatever the interconnect is.
-      options.keep_read_events = true;
       row = sim::with_places(all_of(machine.settings), site.plan.file, [&] {
-        return sweep_row(machine.config, processors::replay::replay(*log->log, machine.config, options));
+        if (timing != machine.timing) {
+          result = replay(site, task, log->log, machine.config);
+          timing = machine.timing;
+        } else {
+          processors::replay::work_out_energy(*log->log, machine.config, result);
+        }
+        return sweep_row(machine.config, result);
       });
     } catch (const sim::UserError& error) {
       throw sim::UserError(std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) +

@@ -266,7 +266,7 @@ TEST(CompareFrames, TheTimesOfTwoSweepsAddUp) {
       sim::Config config = sim::Config::from_text(run_schema(), small_scene, "test", assignments);
       runs.push_back(run::run(config));
       const std::size_t i = plan.machines.size();
-      plan.machines.push_back({test::made_key(i), 0, runs[i].machine, pool.share(runs[i].values)});
+      plan.machines.push_back({test::made_key(i), 0, i, runs[i].machine, pool.share(runs[i].values)});
       plan.points.push_back({{static_cast<std::int64_t>(std::stoi(nodes))}, i, 0, 1.0});
     }
     plan.axes = {"machine.nodes"};

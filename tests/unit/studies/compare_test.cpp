@@ -58,7 +58,7 @@ void write_sweep(const fs::path& file, const RunResult& run) {
   fs::create_directories(file.parent_path());
   SweepPlan plan;
   plan.frames.push_back({test::made_key(1), run.frame_config, {}});
-  plan.machines.push_back({test::made_key(2), 0, run.machine, SettingsPool().share(run.values)});
+  plan.machines.push_back({test::made_key(2), 0, 0, run.machine, SettingsPool().share(run.values)});
   plan.points.push_back({{}, 0, 0, 1.0});
   SweepStore store(file, plan);
   store.add_frame(0, frame_row(run.functional, 0), 1);

@@ -26,7 +26,12 @@ using Kind = SweepTask::Kind;
 
 std::size_t below(Random& random, std::size_t end) { return static_cast<std::size_t>(random() % end); }
 
-// Machines of one batch have the same line; one without a cache shares nothing with others than such.
+std::pair<std::size_t, std::string> batch_key(const SweepMachine& machine) {
+  return {machine.frame, processors::walk::StrippedLog::key_of(machine.config)};
+}
+
+// Machines of one batch have the same line; one without a cache shares nothing with others than such. Some
+// machines of a batch have equal timings.
 SweepPlan random_sweep(Random& random) {
   SweepPlan plan;
   plan.frames.resize(1 + below(random, 6));
@@ -44,6 +49,11 @@ SweepPlan random_sweep(Random& random) {
   std::shuffle(plan.machines.begin(), plan.machines.end(), random);
   std::stable_sort(plan.machines.begin(), plan.machines.end(),
                    [](const SweepMachine& a, const SweepMachine& b) { return a.frame < b.frame; });
+  for (std::size_t i = 0; i < plan.machines.size(); ++i) {
+    const std::size_t other = below(random, i + 1);
+    const bool alike = batch_key(plan.machines[other]) == batch_key(plan.machines[i]);
+    plan.machines[i].timing = other != i && alike ? plan.machines[other].timing : i;
+  }
   return plan;
 }
 
@@ -133,10 +143,7 @@ class Account {
   [[nodiscard]] const Schedule& schedule() const { return schedule_; }
 
  private:
-  Batch& batch_of(std::size_t machine) {
-    return batches_[{plan_.machines[machine].frame,
-                     processors::walk::StrippedLog::key_of(plan_.machines[machine].config)}];
-  }
+  Batch& batch_of(std::size_t machine) { return batches_[batch_key(plan_.machines[machine])]; }
 
   [[nodiscard]] std::vector<const Batch*> offered_batches() const {
     std::vector<const Batch*> offered;
@@ -190,9 +197,24 @@ class Account {
       RC_ASSERT(&batch_of(machine) == &batch);
       RC_ASSERT(batch.waiting.erase(machine) == 1);
     }
-    // As many machines as fit in the time, at least one, and one while no time of the batch is known.
+    const auto timing = [&](std::size_t machine) { return plan_.machines[machine].timing; };
+    std::set<std::size_t> complete;  // timings of which all machines were given
+    for (std::size_t i = 0; i < task.machines.size(); ++i) {
+      const std::size_t one = timing(task.machines[i]);
+      RC_ASSERT(!complete.contains(one));
+      RC_ASSERT(std::none_of(batch.waiting.begin(), batch.waiting.end(),
+                             [&](std::size_t machine) { return timing(machine) == one; }));
+      if (i + 1 < task.machines.size() && timing(task.machines[i + 1]) != one) {
+        complete.insert(one);
+      }
+    }
+    // As many machines as fit in the time, at least one, and one while no time of the batch is known; and all
+    // others of the last one's timing.
     const auto given = static_cast<std::int64_t>(task.machines.size());
-    RC_ASSERT(given == 1 || (batch.timed != 0 && given * each <= nanoseconds));
+    const auto before = std::count_if(task.machines.begin(), task.machines.end(), [&](std::size_t machine) {
+      return timing(machine) != timing(task.machines.back());
+    });
+    RC_ASSERT(before == 0 || (batch.timed != 0 && (before + 1) * each <= nanoseconds));
     RC_ASSERT(batch.waiting.empty() || batch.timed == 0 || (given + 1) * each > nanoseconds);
   }
 
@@ -283,6 +305,9 @@ TEST(SweepSchedule, EstimatesWhatIsLeft) {
   SweepPlan plan;
   plan.frames.resize(2);
   plan.machines.resize(6);
+  for (std::size_t i = 0; i < plan.machines.size(); ++i) {
+    plan.machines[i].timing = i;
+  }
   plan.machines[5].frame = 1;
   plan.machines[3].config.cache.cache.line = plan.machines[4].config.cache.cache.line = 128;
   Schedule schedule(plan, std::vector<bool>(6), std::vector<bool>(2));
@@ -309,6 +334,7 @@ TEST(SweepSchedule, EstimatesWhatIsLeftInProportion) {
   plan.machines.resize(6);
   for (std::size_t i = 0; i < plan.machines.size(); ++i) {
     plan.machines[i].frame = i / 3;
+    plan.machines[i].timing = i;
   }
   Schedule schedule(plan, std::vector<bool>(6), std::vector<bool>(2), {{0.25, 2.5}, {0.5, 10.0}});
   EXPECT_EQ(schedule.nanoseconds_left(), 0) << "nothing is measured yet";
