@@ -61,7 +61,8 @@ template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
 
 /// Copies of many arrays, one behind the other in blocks that are large enough for large pages: each array by
-/// itself would get ordinary ones, and the system takes time for every page.
+/// itself would get ordinary ones, and the system takes time for every page. What is not used of a block
+/// takes no memory on Linux.
 template <class T>
 class LargeBlocks {
  public:
@@ -69,7 +70,7 @@ class LargeBlocks {
   /// come, itself included.
   std::span<const T> copy(std::span<const T> array, std::size_t to_come) {
     if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < array.size()) {
-      constexpr std::size_t block = (std::size_t{2} << 20U) / sizeof(T);
+      constexpr std::size_t block = (std::size_t{16} << 20U) / sizeof(T);
       blocks_.emplace_back().reserve(std::max(array.size(), std::min(block, array.size() * to_come)));
     }
     LargeVector<T>& block = blocks_.back();

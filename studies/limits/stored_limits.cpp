@@ -1,5 +1,6 @@
 #include "studies/limits/stored_limits.h"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -57,18 +58,18 @@ class DifferingKeys {
 }  // namespace
 
 StoredLimits::StoredLimits(const sweep::SweepReader& sweep, const std::optional<keys::Prices>& prices) {
+  const std::vector<sweep::StoredPoint> stored = sweep.points();
+  if (std::ranges::count(stored, true, &sweep::StoredPoint::done) > most_limited_points) {
+    return;
+  }
   const sim::Schema& schema = sweep::sweep_schema();
   DifferingKeys differing;
   std::vector<LimitPoint> points;
   std::map<std::int64_t, std::optional<PointFigures>> one_node;  // by the id of a base machine
-  for (const sweep::StoredPoint& point : sweep.points()) {
+  for (const sweep::StoredPoint& point : stored) {
     const std::optional<sweep::SweepRow> row = sweep.read_result(point.machine);
     if (!row || figures::count_of(row->counters, "end").value_or(0) <= 0) {
       continue;
-    }
-    if (points.size() == most_limited_points) {
-      places_.clear();
-      return;
     }
     const Settings settings = sweep.settings(point.machine);
     try {

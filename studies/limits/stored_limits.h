@@ -1,6 +1,7 @@
 // What limits the points of a sweep, by its store.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -11,7 +12,7 @@
 namespace marti::studies::limits {
 
 /// Nothing is said of sweeps with more timed points: each takes about a millisecond and some 30 KiB.
-inline constexpr std::size_t most_limited_points = 4'000;
+inline constexpr std::ptrdiff_t most_limited_points = 4'000;
 
 class StoredLimits {
  public:

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "sim/units.h"
@@ -43,9 +45,12 @@ std::string csv_cell(const Cell& cell) {
   return text == nullptr ? std::string() : quoted(*text);
 }
 
-void append_record(std::string& out, const std::vector<Cell>& cells) {
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    out += (i == 0 ? "" : ",") + csv_cell(cells[i]);
+// A record of cell(0) to cell(cells - 1).
+template <class CellAt>
+void append_record(std::string& out, std::size_t cells, const CellAt& cell) {
+  for (std::size_t i = 0; i < cells; ++i) {
+    out += i == 0 ? "" : ",";
+    out += csv_cell(cell(i));
   }
   out += "\r\n";
 }
@@ -53,41 +58,32 @@ void append_record(std::string& out, const std::vector<Cell>& cells) {
 }  // namespace
 
 std::string csv_of(const Table& table) {
-  std::vector<Cell> names;
-  for (const Column& column : table.columns()) {
-    names.emplace_back(column.name);
-  }
+  const std::span<const Column> columns = table.columns();
   std::string out;
-  append_record(out, names);
+  append_record(out, columns.size(), [&](std::size_t i) { return Cell(columns[i].name); });
   for (const std::vector<Cell>& row : table.rows()) {
-    std::vector<Cell> cells;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      cells.push_back(in_words(row[i], table.columns()[i].type));
-    }
-    append_record(out, cells);
+    append_record(out, columns.size(), [&](std::size_t i) { return in_words(row[i], columns[i].type); });
   }
   return out;
 }
 
 std::string csv_of_rows(const nlohmann::ordered_json& rows) {
-  std::vector<Cell> names;
+  std::vector<std::string> names;
   std::set<std::string> seen;
   for (const auto& row : rows) {
     for (const auto& [name, value] : row.items()) {
       if (seen.insert(name).second) {
-        names.emplace_back(name);
+        names.push_back(name);
       }
     }
   }
   std::string out;
-  append_record(out, names);
+  append_record(out, names.size(), [&](std::size_t i) { return Cell(names[i]); });
   for (const auto& row : rows) {
-    std::vector<Cell> cells;
-    for (const Cell& name : names) {
-      const auto at = row.find(std::get<std::string>(name));
-      cells.push_back(at == row.end() ? Cell() : cell_of(*at));
-    }
-    append_record(out, cells);
+    append_record(out, names.size(), [&](std::size_t i) {
+      const auto at = row.find(names[i]);
+      return at == row.end() ? Cell() : cell_of(*at);
+    });
   }
   return out;
 }

@@ -324,10 +324,11 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   constexpr std::uint64_t sections = 16;  // at most so many sections of a configuration are read by a machine
   const std::uint64_t machine =
       sizeof(SweepMachine) + key + overhead + sections * sizeof(SettingsPart) + sizeof(std::size_t);
+  // In the list of the machines, and in that of the timings.
   const std::uint64_t known = sizeof(std::pair<std::string, std::size_t>) + key + 4 * overhead;
   const std::uint64_t point = sizeof(SweepPoint) + overhead + axes * sizeof(sim::Value);
   // The last term is for the numbers by which machines are put in order.
-  return points * (machine + known + point + 4 * sizeof(std::size_t));
+  return points * (machine + 2 * known + point + 4 * sizeof(std::size_t));
 }
 
 SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes) {

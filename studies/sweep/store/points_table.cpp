@@ -79,7 +79,7 @@ tables::Column column_of(const std::string& name) {
 }
 
 tables::Table table_of(std::string name, std::string title, std::span<const std::string> names,
-                       std::span<const Row> rows) {
+                       std::vector<Row> rows) {
   std::vector<tables::Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(column_of(names[i]));
@@ -89,12 +89,11 @@ tables::Table table_of(std::string name, std::string title, std::span<const std:
     }
   }
   tables::Table table(std::move(name), std::move(title), columns);
-  for (const Row& row : rows) {
-    std::vector<tables::Cell> cells;
+  for (Row& row : rows) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      cells.push_back(tables::as_type(row.figures[i], columns[i].type));
+      row.figures[i] = tables::as_type(row.figures[i], columns[i].type);
     }
-    table.add_row(std::move(cells));
+    table.add_row(std::move(row.figures));
   }
   return table;
 }
@@ -153,7 +152,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
         (axis == 0 ? " " : ", ") + names[axis] + " = " + axis_text(names[axis], rows[*best].figures[axis]);
   }
   tables::Table table =
-      table_of("best", "Points that no other beats in cost and " + metric, marked_names, marked);
+      table_of("best", "Points that no other beats in cost and " + metric, marked_names, std::move(marked));
   for (Row& row : front) {
     for (std::size_t axis = 0; axis < axes; ++axis) {
       if (!is_boolean_axis(names[axis])) {  // a table puts these in words itself
@@ -164,7 +163,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
       row.figures.back() = shown(row.figures.back());
     }
   }
-  text += "\n\n" + studies::tables::text_of(table_of("best", table.title(), names, front));
+  text += "\n\n" + studies::tables::text_of(table_of("best", table.title(), names, std::move(front)));
   return {std::move(table), std::move(text)};
 }
 

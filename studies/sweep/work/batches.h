@@ -15,8 +15,8 @@ namespace marti::studies::sweep {
 struct MachineBatch {
   std::size_t frame = 0;
   std::string key;  ///< empty: their log cannot be stripped
-  std::vector<std::size_t>
-      machines;                     ///< indices into SweepPlan::machines; those of one timing stand together
+  /// Indices into SweepPlan::machines. Those of one timing stand together.
+  std::vector<std::size_t> machines;
   std::vector<std::uint32_t> ways;  ///< of the stripped logs of all of them, ascending
 };
 
