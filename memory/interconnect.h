@@ -41,6 +41,11 @@ struct InterconnectConfig {
   std::int64_t cycles_per_beat = 1;  ///< cycles to move one beat of data
   std::int64_t address_cycles = 1;   ///< bus: cycles to send an address
   std::int64_t latency_cycles = 10;  ///< ideal: for a whole read or write; crossbar: in each direction
+
+  /// How many beats move so many bytes; the width must not be 0.
+  [[nodiscard]] std::int64_t beats(std::uint32_t bytes) const {
+    return (std::int64_t{bytes} + width - 1) / width;
+  }
 };
 
 /// One transaction of a port (a node of the cluster, counted from 0).

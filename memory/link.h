@@ -12,17 +12,17 @@ namespace marti::memory {
 class BeatTime {
  public:
   explicit BeatTime(const InterconnectConfig& config)
-      : width_(config.width), beat_(config.clock.cycles(config.cycles_per_beat)) {}
+      : config_(config), beat_(config.clock.cycles(config.cycles_per_beat)) {}
   [[nodiscard]] sim::Ticks operator()(std::uint32_t bytes) const {
     if (bytes != last_bytes_) {
       last_bytes_ = bytes;
-      last_ticks_ = sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+      last_ticks_ = sim::multiply_ticks(beat_, config_.beats(bytes));
     }
     return last_ticks_;
   }
 
  private:
-  std::int64_t width_;
+  InterconnectConfig config_;
   sim::Ticks beat_;
   mutable std::uint32_t last_bytes_ = 0;
   mutable sim::Ticks last_ticks_ = 0;

@@ -25,6 +25,7 @@ class EventHandler {
 class Engine {
  public:
   static constexpr std::size_t max_classes = 16;
+
   /// All events of `event_class` (below max_classes) go to `handler`. Lower classes come first at equal
   /// times.
   void attach(std::uint8_t event_class, EventHandler& handler) { handlers_.at(event_class) = &handler; }

@@ -66,8 +66,8 @@ using LargeVector = std::vector<T, LargePageAllocator<T>>;
 template <class T>
 class LargeBlocks {
  public:
-  /// The copy of an array, which lives as long as the blocks. About so many arrays of its size are yet to
-  /// come, itself included.
+  /// The copy of an array, which lives as long as the blocks. At most so many arrays of about its size are
+  /// yet to come, itself included.
   std::span<const T> copy(std::span<const T> array, std::size_t to_come) {
     if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < array.size()) {
       constexpr std::size_t block = (std::size_t{16} << 20U) / sizeof(T);

@@ -10,8 +10,8 @@ using memory::InterconnectKind;
 double ticks(sim::Ticks time) { return static_cast<double>(time); }
 
 double beats(const memory::InterconnectConfig& interconnect, std::uint32_t bytes) {
-  const std::int64_t count = (std::int64_t{bytes} + interconnect.width - 1) / interconnect.width;
-  return static_cast<double>(count) * ticks(interconnect.clock.cycles(interconnect.cycles_per_beat));
+  return static_cast<double>(interconnect.beats(bytes)) *
+         ticks(interconnect.clock.cycles(interconnect.cycles_per_beat));
 }
 
 // Services of a cycle at one station: their number and time.

@@ -51,10 +51,7 @@ void add_timing(Digest& digest, const sim::EffectiveValue& setting,
   }
   if (setting.key == "interconnect.width" && machine.cache.organisation != CacheOrganisation::none &&
       machine.build.sharing == Sharing::given) {
-    const auto beats = [&](std::uint32_t bytes) {
-      return std::to_string((std::uint64_t{bytes} + machine.interconnect.width - 1) /
-                            machine.interconnect.width);
-    };
+    const auto beats = [&](std::uint32_t bytes) { return std::to_string(machine.interconnect.beats(bytes)); };
     add(digest, "beats", beats(machine.cache.cache.line) + " " + beats(machine.layout.pixel_bytes));
   } else {
     add(digest, setting.key, setting.value);

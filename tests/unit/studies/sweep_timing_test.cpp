@@ -1,11 +1,9 @@
 // Machines of a sweep that share a replay: each has the results of its own replay.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
-#include <set>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "processors/replay/replay.h"
 #include "studies/run/functional_run.h"
@@ -32,8 +30,8 @@ max_depth = 2
 nodes = 3
 )";
 
-// Replays every machine and, where another of its timing came before, compares with that one's result.
-// Returns the number of timings.
+// Replays every machine and compares with the result of the first machine of its timing. Returns the number
+// of timings.
 std::size_t check_timings(const std::string& text) {
   const SweepPlan plan = test::plan_of(frame + text);
   const keys::FrameConfig& config = plan.frames.front().config;
@@ -41,9 +39,9 @@ std::size_t check_timings(const std::string& text) {
   std::map<std::size_t, MachineResult> first;
   for (const SweepMachine& machine : plan.machines) {
     const MachineResult own = processors::replay::replay(*run.frame.log, machine.config);
-    const auto [known, is_new] = first.emplace(machine.timing, own);
-    processors::replay::work_out_energy(*run.frame.log, machine.config, known->second);
-    EXPECT_EQ(sweep_row(machine.config, known->second), sweep_row(machine.config, own)) << text;
+    MachineResult& shared = first.emplace(machine.timing, own).first->second;
+    processors::replay::work_out_energy(*run.frame.log, machine.config, shared);
+    EXPECT_EQ(sweep_row(machine.config, shared), sweep_row(machine.config, own)) << text;
   }
   return first.size();
 }
