@@ -20,7 +20,7 @@ sim::Ticks Bus::unloaded_read(std::uint32_t bytes) const {
 void Bus::read_late(const Transaction& transaction) {
   const sim::Ticks now = site_.engine.now();
   const sim::Ticks start = take(now, address_);
-  pending_[transaction.port] = {start - now, address_, 0, 0, transaction.bytes};
+  pending_[transaction.port] = {start - now, 0, 0, transaction.bytes};
   ask_late(transaction, false, sim::add_ticks(start, address_));
 }
 

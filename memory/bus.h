@@ -3,6 +3,8 @@
 
 #include "memory/banked.h"
 #include "memory/link.h"
+#include "sim/large_pages.h"
+#include "sim/prefetch.h"
 
 namespace marti::memory {
 
@@ -27,15 +29,20 @@ class Bus final : public Banked {
   void reply_for(Client& client, std::uint32_t port) {
     send_data(client, port, pending_[port], site_.engine.now());
   }
+  void prepare(std::uint32_t port) const override {
+    if (port < pending_.size()) {
+      sim::prefetch(pending_[port]);
+    }
+  }
 
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 
  private:
-  // A split read between its address and its data.
-  struct Pending {
+  // A split read between its address, which took address_, and its data. Two share a cache line of the host:
+  // with many ports each is out of its caches when its data are ready.
+  struct alignas(32) Pending {
     sim::Ticks wait_interconnect = 0;
-    sim::Ticks transfer = 0;
     sim::Ticks wait_bank = 0;
     sim::Ticks bank = 0;
     std::uint32_t bytes = 0;
@@ -57,7 +64,7 @@ class Bus final : public Banked {
   BeatTime beats_;
   sim::Ticks address_;
   Link link_;
-  std::vector<Pending> pending_;
+  sim::LargeVector<Pending> pending_;
   InterconnectStatistics statistics_;
 };
 
@@ -83,8 +90,7 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
     const sim::Ticks start = take(now, address_);
     const sim::Ticks sent = add_ticks(start, address_);
     const BankAccess access = banks_.read(transaction.address, transaction.bytes, sent);
-    const Pending read = {start - now, address_, access.start - sent, access.ready - access.start,
-                          transaction.bytes};
+    const Pending read = {start - now, access.start - sent, access.ready - access.start, transaction.bytes};
     if (site_.ports == 1) {
       // The one port asks for nothing before its data have come, so nothing can take the bus until then.
       send_data(client, transaction.port, read, access.ready);
@@ -105,11 +111,11 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
 }
 
 template <class Client>
-void Bus::send_data(Client& client, std::uint32_t port, const Pending& read, sim::Ticks ready) {
+inline void Bus::send_data(Client& client, std::uint32_t port, const Pending& read, sim::Ticks ready) {
   const sim::Ticks data = beats_(read.bytes);
   const sim::Ticks start = take(ready, data);
   client.read_done(port, {sim::add_ticks(start, data), read.wait_interconnect + (start - ready),
-                          read.transfer + data, read.wait_bank, read.bank});
+                          sim::add_ticks(address_, data), read.wait_bank, read.bank});
 }
 
 template <class Client>

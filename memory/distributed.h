@@ -14,6 +14,7 @@
 
 #include "memory/interconnect.h"
 #include "memory/network.h"
+#include "sim/prefetch.h"
 
 namespace marti::memory {
 
@@ -64,6 +65,7 @@ class Distributed final : public Interconnect {
   void read(const Transaction& transaction) override;
   void write(const Transaction& transaction) override;
   void proceed(std::uint32_t port, std::uint32_t sequence) override;
+  void prepare(std::uint32_t port) const override { sim::prefetch(ports_[port]); }
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override { return banks_; }
   /// The mean over all homes, for node 0, rounded down.

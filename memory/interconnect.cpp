@@ -12,6 +12,8 @@ void Interconnect::reply(std::uint32_t /*port*/) {
   throw sim::InternalError("a reply event for an interconnect that posts none");
 }
 
+void Interconnect::prepare(std::uint32_t /*port*/) const {}
+
 void Interconnect::proceed(std::uint32_t /*port*/, std::uint32_t /*sequence*/) {
   throw sim::InternalError("an event of the memory's own for an interconnect that posts none");
 }

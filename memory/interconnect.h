@@ -116,6 +116,8 @@ class Interconnect {
   virtual void reply(std::uint32_t port);
   /// Handles the event of the site's memory class for `port` with this sequence number, if such are posted.
   virtual void proceed(std::uint32_t port, std::uint32_t sequence);
+  /// Prefetches what is kept for a port into the host's caches. A hint: it affects nothing but speed.
+  virtual void prepare(std::uint32_t port) const;
 
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks; empty where no banks are modelled.

@@ -24,11 +24,7 @@ void Engine::run(std::uint64_t limit_per_tick) {
   std::uint64_t at_this_tick = 0;
   while (!queue_.empty()) {
     const Event event = queue_.pop();
-    look_ahead([this](const Event& next) {
-      if (EventHandler* handler = handlers_[next.event_class() % max_classes]) {
-        handler->prepare(next);
-      }
-    });
+    look_ahead([this](const Event& next) { return handlers_[next.event_class() % max_classes]; });
     handle(event, at_this_tick, limit_per_tick);
   }
 }

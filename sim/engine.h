@@ -16,9 +16,12 @@ class EventHandler {
   virtual ~EventHandler() = default;
   /// `event.time` is the engine's current time. New events may be posted from here.
   virtual void handle(const Event& event) = 0;
-  /// `event` will probably be handled soon, so its data may be prefetched into the host's caches. Called only
-  /// when so many events are pending that their data do not all fit there.
+  /// `event` will probably be handled soon, so the data of its component may be prefetched into the host's
+  /// caches. Called only when so many events are pending that their data do not all fit there.
   virtual void prepare(const Event& /*event*/) {}
+  /// prepare() was called for `event` a while ago, in most cases, and it may be the next: what the
+  /// component's data point to may be prefetched.
+  virtual void prepare_more(const Event& /*event*/) {}
 };
 
 /// Runs a simulation. Not shared between threads: each simulated machine has its own engine.
@@ -64,12 +67,28 @@ class Engine {
 
  private:
   [[noreturn]] static void fail_in_past();
-  // Has handlers prepare for the events that are likely to be next, if many are pending.
-  template <class Prepare>
-  void look_ahead(const Prepare& prepare) const {
+  // Has handlers prepare for the events that are likely to be next, if many are pending. handler_of(event)
+  // is null or a handler.
+  template <class HandlerOf>
+  void look_ahead(const HandlerOf& handler_of) const {
     if (queue_.many_pending()) [[unlikely]] {
-      queue_.each_likely_next(prepare);
+      look_far_ahead(handler_of);
     }
+  }
+  // Not inlined, so that simulations with few pending events need no registers for it.
+  template <class HandlerOf>
+  [[gnu::noinline]] void look_far_ahead(const HandlerOf& handler_of) const {
+    queue_.look_ahead(
+        [&handler_of](const Event& later) {
+          if (auto* const handler = handler_of(later)) {
+            handler->prepare(later);
+          }
+        },
+        [&handler_of](const Event& soon) {
+          if (auto* const handler = handler_of(soon)) {
+            handler->prepare_more(soon);
+          }
+        });
   }
   // Passes one event to its handler.
   void handle(const Event& event, std::uint64_t& at_this_tick, std::uint64_t limit_per_tick);
@@ -90,20 +109,20 @@ void Engine::run_all(Handler& handler) {
       handler.handle(event);
     }
   }
-  const auto prepare = [&handler](const Event& next) { handler.prepare(next); };
+  const auto handler_of = [&handler](const Event& /*event*/) { return &handler; };
   for (;; ++events) {
     // The two kinds are handled apart, because which comes next is not predictable and costs a branch here.
     if (queue_.next_is_in_order()) {
       const Event event = queue_.pop_in_order();
       now_ = event.time;
-      look_ahead(prepare);
+      look_ahead(handler_of);
       handler.handle_in_order(event);
     } else if (queue_.has_no_other()) [[unlikely]] {
       break;
     } else {
       const Event event = queue_.pop_other();
       now_ = event.time;
-      look_ahead(prepare);
+      look_ahead(handler_of);
       handler.handle(event);
     }
   }

@@ -73,14 +73,15 @@ class EventCalendar {
     }
   }
 
-  /// Calls visit(event) for a few events that are likely to be popped next.
-  template <class Visit>
-  void each_likely_next(const Visit& visit) const {
+  /// Calls soon(event) for the earliest event and later(event) for the one after it.
+  template <class Later, class Soon>
+  void look_ahead(const Later& later, const Soon& soon) const {
     if (size_ != 0) {
-      visit(front());
-      if (const std::uint32_t next = days_[first_].next; next != none) {
-        visit(entries_[next].event);
+      const Entry& day = days_[first_];
+      if (size_ != 1) {
+        later(day.next != none ? entries_[day.next].event : days_[busy_.next((first_ + 1) & mask_)].event);
       }
+      soon(day.event);
     }
   }
 

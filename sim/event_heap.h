@@ -32,11 +32,14 @@ class EventHeap {
   /// The earliest event, or Event::never() while the heap is empty.
   [[nodiscard]] Event front() const { return heap_.empty() ? Event::never() : heap_.front(); }
 
-  /// Calls visit(event) for the few events that may be next unless an earlier one is pushed.
-  template <class Visit>
-  void each_likely_next(const Visit& visit) const {
-    for (std::size_t at = 0; at <= arity && at < heap_.size(); ++at) {
-      visit(heap_[at]);
+  /// Calls soon(event) for the earliest event and later(event) for those of which one comes after it.
+  template <class Later, class Soon>
+  void look_ahead(const Later& later, const Soon& soon) const {
+    for (std::size_t at = 1; at <= arity && at < heap_.size(); ++at) {
+      later(heap_[at]);
+    }
+    if (!heap_.empty()) {
+      soon(heap_.front());
     }
   }
 

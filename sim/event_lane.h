@@ -1,6 +1,7 @@
 // Pending events that are pushed nearly in order.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -20,11 +21,13 @@ class EventLane {
   /// The earliest event; one later than all others when the lane is empty.
   [[nodiscard]] Event front() const { return size_ == 0 ? Event::never() : events_[first_]; }
 
-  /// Calls visit(event) for the earliest two events.
-  template <class Visit>
-  void each_likely_next(const Visit& visit) const {
-    for (std::size_t number = 0; number < 2 && number < size_; ++number) {
-      visit(events_[(first_ + number) & (events_.size() - 1)]);
+  /// Calls later(event) for an event that a few others come before, and soon(event) for one that is nearly
+  /// the next: as events are popped, for nearly every event first the one and then the other.
+  template <class Later, class Soon>
+  void look_ahead(const Later& later, const Soon& soon) const {
+    if (size_ != 0) {
+      later(events_[(first_ + std::min(size_ - 1, before_later)) & (events_.size() - 1)]);
+      soon(events_[(first_ + std::min(size_ - 1, before_soon)) & (events_.size() - 1)]);
     }
   }
 
@@ -58,6 +61,8 @@ class EventLane {
  private:
   static constexpr std::size_t fewest = 16;  // a power of two
   static constexpr std::size_t longest_walk = 16;
+  static constexpr std::size_t before_later = 8;
+  static constexpr std::size_t before_soon = 3;
 
   Event& at(std::size_t number) { return events_[(first_ + number) & (events_.size() - 1)]; }
 

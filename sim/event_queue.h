@@ -75,12 +75,13 @@ class EventQueue {
   /// of the heap, of which there are few, are not counted.
   [[nodiscard]] bool many_pending() const { return lane_.size() + calendar_.size() > many; }
 
-  /// Calls visit(event) for a few events that may be next unless an earlier one is pushed.
-  template <class Visit>
-  void each_likely_next(const Visit& visit) const {
-    lane_.each_likely_next(visit);
-    calendar_.each_likely_next(visit);
-    heap_.each_likely_next(visit);
+  /// Calls later(event) for some events that will be popped soon unless earlier ones are pushed, and
+  /// soon(event) for some that may be next.
+  template <class Later, class Soon>
+  void look_ahead(const Later& later, const Soon& soon) const {
+    lane_.look_ahead(later, soon);
+    calendar_.look_ahead(later, soon);
+    heap_.look_ahead(later, soon);
   }
 
   /// Removes and returns the earliest event. The queue must not be empty.
@@ -137,9 +138,10 @@ class EventQueue {
     heap_first_ = heap_.front();
   }
 
-  // Four to eight for each event, so that most days have at most one.
+  // Four to eight for each event, so that most days have at most one; but no more than the host's caches
+  // hold.
   [[nodiscard]] static std::uint32_t days_for(std::size_t events) {
-    constexpr std::size_t most = EventCalendar::most_days;
+    constexpr std::size_t most = 65536;
     const std::size_t days = events >= most ? most : 4 * std::bit_ceil(events);
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(days, fewest_days, most));
   }

@@ -98,8 +98,8 @@ inline constexpr std::array<std::int64_t StepCounts::*, program::ray_kinds> ray_
 /// References are lines touched (without a cache: parts of at most one interleave unit each); one record may
 /// take several references.
 struct ReferenceCounts {
-  std::array<std::int64_t, memory::record_kinds> hits{};
   std::array<std::int64_t, memory::record_kinds> misses{};
+  std::array<std::int64_t, memory::record_kinds> hits{};
 
   [[nodiscard]] std::int64_t all_hits() const;
   [[nodiscard]] std::int64_t all_misses() const;
@@ -107,14 +107,15 @@ struct ReferenceCounts {
   ReferenceCounts& operator+=(const ReferenceCounts& other);
 };
 
-/// Everything counted at one node.
-struct NodeStatistics {
-  StepCounts steps;
-  ReferenceCounts references;
+/// Everything counted at one node. What a read adds to, the four waits and the misses, lies in two cache
+/// lines of the host: with many nodes these are out of its caches at each read.
+struct alignas(64) NodeStatistics {
+  sim::Ticks finish = 0;  ///< when it learned that no packet is left
   TimeDivision time{};
+  ReferenceCounts references;
   std::int64_t packets = 0;
   std::int64_t writes = 0;
-  sim::Ticks finish = 0;  ///< when it learned that no packet is left
+  StepCounts steps;
 
   static constexpr auto counters() {
     using C = sim::Counter<NodeStatistics>;

@@ -85,8 +85,22 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
-    sim::prefetch(cursors_[node]);
-    sim::prefetch(statistics_[node]);
+    Base::prepare_interconnect(node);
+    if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory)) {
+      return;  // most of these do not come to the node
+    }
+    sim::prefetch_line(&cursors_[node]);
+    if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
+      const cost::NodeStatistics& statistics = statistics_[node];
+      sim::prefetch_line(&statistics.time[static_cast<std::size_t>(cost::Activity::interconnect_wait)]);
+      sim::prefetch_line(&statistics.references.misses);
+      walker_.prefetch(cursors_[node], statistics);
+    }
+  }
+  void prepare_more(const sim::Event& event) override {
+    if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
+      walker_.prefetch_steps(cursors_[event.component()]);
+    }
   }
 
   void finish() override {
@@ -127,9 +141,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   static bool for_pixel(const walk::Cursor& /*cursor*/) { return true; }
 
   void begin_packet(std::uint32_t node, walk::Cursor& cursor) requires requires(Walker walker) {
-    walker.begin_packet(node, cursor);
+    walker.begin_packet(node, cursor, statistics_[node]);
   }
-  { walker_.begin_packet(node, cursor); }
+  { walker_.begin_packet(node, cursor, statistics_[node]); }
   void begin_pixel(walk::Cursor& cursor) const { walker_.begin_pixel(cursor); }
 
   // Takes the node's caches through the packets left out before its next one.

@@ -338,7 +338,7 @@ class Tracer {
     recorder_.phase(Phase::shade, pending.kind);
     const Vec scattered_weight = surface.color * Real(material.diffuse);
     const Vec mirror_weight = Vec(material.specular_color) * Real(material.reflection);
-    const Real through(material.transmission);
+    const auto through = static_cast<Real>(material.transmission);
     const Real scattering = largest(scattered_weight);
     const Real mirroring = largest(mirror_weight);
     const Real sum = scattering + mirroring + through;

@@ -22,6 +22,7 @@
 #include "processors/walk/node_order.h"
 #include "processors/walk/replay_input.h"
 #include "processors/walk/visit_plan.h"
+#include "sim/prefetch.h"
 
 namespace marti::processors::walk {
 
@@ -152,6 +153,17 @@ class LogWalker {
     if constexpr (counted) {
       cursor.origin.begin_ray(ray.operand());
     }
+  }
+  /// Prefetches what advance() uses beside the first cache line of the cursor and the misses.
+  static void prefetch(const Cursor& cursor, const cost::NodeStatistics& statistics) {
+    sim::prefetch(cursor);
+    sim::prefetch(statistics.references.hits);
+    sim::prefetch(statistics.steps);
+  }
+  /// Prefetches the next words and lines that the cursor comes to.
+  static void prefetch_steps(const Cursor& cursor) {
+    sim::prefetch_line(cursor.word);
+    sim::prefetch_line(cursor.line);
   }
   /// Moves the cursor past the reference that missed, which has been served.
   void pass(Cursor& cursor) const {

@@ -13,6 +13,7 @@
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/replay_input.h"
 #include "processors/walk/stripped_log.h"
+#include "sim/prefetch.h"
 
 namespace marti::processors::walk {
 
@@ -35,8 +36,9 @@ class StrippedWalker {
   [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
 
-  /// The node begins the packet at its cursor.
-  void begin_packet(std::uint32_t node, Cursor& cursor) {
+  /// The node begins the packet at its cursor. From here to the end of the packet the statistics' hits have
+  /// no meaning.
+  void begin_packet(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     if (cursor.tags == Tags::empty && tags_may_be_late_) {
       cursor.tags = Tags::late;
       cursor.first_x = cursor.x;
@@ -48,6 +50,12 @@ class StrippedWalker {
       cursor.tags = Tags::present;
     }
     cursor.stripped = stripped_.packet(cursor.x, cursor.y).words.data();
+    // The end of the packet adds all its references and takes the misses away again, those of this packet
+    // being left.
+    cost::ReferenceCounts& counts = statistics.references;
+    for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
+      counts.hits[kind] += counts.misses[kind];
+    }
   }
 
   /// A packet's words come in the order of its pixels.
@@ -75,13 +83,20 @@ class StrippedWalker {
     }
     const StrippedLog::StrippedPacket stripped = stripped_.packet(cursor.x, cursor.y);
     sim::merge(statistics.steps, stripped.totals.steps);
+    cost::ReferenceCounts& counts = statistics.references;
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
-      statistics.references.hits[kind] += stripped.totals.references[kind];
+      counts.hits[kind] += stripped.totals.references[kind] - counts.misses[kind];
     }
     if (cursor.tags != Tags::late) {
       end_packet(caches_.view(node), stripped);
     }
   }
+
+  /// Prefetches what advance() uses beside the first cache line of the cursor and the misses: nothing.
+  static void prefetch(const Cursor& /*cursor*/, const cost::NodeStatistics& /*statistics*/) {}
+  /// Prefetches the next words again: where nodes are many, these are out of the host's caches when the node
+  /// has its turn.
+  static void prefetch_steps(const Cursor& cursor) { sim::prefetch_line(cursor.stripped); }
 
   [[nodiscard]] static memory::Address missed_address(const Cursor& cursor) { return cursor.at; }
   [[nodiscard]] std::uint32_t missed_bytes(const Cursor& /*cursor*/) const { return line_bytes_; }
@@ -139,7 +154,6 @@ class StrippedWalker {
       }
       const memory::RecordKind kind = kind_of(what);
       const std::uint32_t line = what >> StrippedLog::what_bits;
-      --cost::hits_of(statistics, kind);
       ++cost::misses_of(statistics, kind);
       if (behind_.second_level_holds(node, line, time, statistics.time)) {
         continue;
@@ -149,7 +163,7 @@ class StrippedWalker {
         cursor.time = time;
         cursor.at = memory::Address{line} << line_shift_;
         // Many nodes take turns, too many for the host to see how each goes on in its words.
-        __builtin_prefetch(word + 8);
+        sim::prefetch_line(word + 8);
         return Stop::miss;
       }
       (void)behind_.read(line_bytes_, time, statistics.time);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "studies/compare/frames.h"
 #include "studies/keys/setting_value.h"
 #include "studies/sweep/store/sweep_reader.h"
+#include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::compare {

@@ -352,7 +352,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
       sim::prefetch(trees_.ray(ray.tree, ray.number));
     }
     if (const std::uint32_t first = nodes_[number].queue.head; first != RayPool::none) {
-      __builtin_prefetch(rays_[first].word);
+      sim::prefetch_line(rays_[first].word);
     }
   }
 

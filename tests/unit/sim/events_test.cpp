@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
 #include <utility>
@@ -238,6 +239,60 @@ TEST(Engine, HandlesTheSameWithOneHandlerAsWithHandlersByClass) {
   EXPECT_GT(second.in_order, 100);
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
   EXPECT_TRUE(std::is_sorted(first.handled.begin(), first.handled.end(), earlier));
+}
+
+// Each of many components posts its next event at a random distance, in either way. Counts the events before
+// which both prepare() and, later, prepare_more() were called.
+class Prepared final : public EventHandler {
+ public:
+  Prepared(Engine& engine, std::uint32_t components, bool in_order) : engine_(engine), in_order_(in_order) {
+    engine_.attach(0, *this);
+    for (std::uint32_t component = 0; component < components; ++component) {
+      post(component, component);
+    }
+  }
+  void handle(const Event& event) override {
+    prepared += steps_[event.component()] == 2 ? 1 : 0;
+    steps_[event.component()] = 0;
+    if (++handled < 50'000) {
+      post(event.component(), event.time + 4'000 + static_cast<Ticks>(random_() % (in_order_ ? 4 : 4'000)));
+    }
+  }
+  void handle_in_order(const Event& event) { handle(event); }
+  void prepare(const Event& event) override { steps_[event.component()] = 1; }
+  void prepare_more(const Event& event) override {
+    steps_[event.component()] += steps_[event.component()] == 1 ? 1 : 0;
+  }
+  int handled = 0;
+  int prepared = 0;
+
+ private:
+  void post(std::uint32_t component, Ticks time) {
+    const Event event = Event::make(time, 0, component);
+    in_order_ ? engine_.post_in_order(event) : engine_.post(event);
+  }
+
+  Engine& engine_;
+  bool in_order_;
+  std::mt19937_64 random_{7};
+  std::map<std::uint32_t, int> steps_;
+};
+
+TEST(Engine, PreparesForWhatComesNextWhereManyArePending) {
+  for (const bool in_order : {true, false}) {
+    for (const std::uint32_t components : {4096U, 64U}) {
+      Engine engine;
+      engine.reserve_for(components);
+      Prepared handler(engine, components, in_order);
+      engine.run_all(handler);
+      EXPECT_GE(handler.handled, 50'000);
+      if (components == 64) {
+        EXPECT_EQ(handler.prepared, 0);
+      } else {
+        EXPECT_GT(handler.prepared, 45'000) << "in order: " << in_order;
+      }
+    }
+  }
 }
 
 // A component that posts its next event `delay` ticks later, `left` times.
