@@ -60,7 +60,7 @@ class EventLane {
 
  private:
   static constexpr std::size_t fewest = 16;  // a power of two
-  static constexpr std::size_t longest_walk = 16;
+  static constexpr std::size_t longest_walk = 64;
   static constexpr std::size_t before_later = 8;
   static constexpr std::size_t before_soon = 3;
 
