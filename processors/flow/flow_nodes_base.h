@@ -74,7 +74,8 @@ class FlowNodesBase : public FlowNodes {
     engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(event), component));
   }
   void spend(std::uint32_t node, cost::Activity activity, sim::Ticks time) {
-    statistics_[node].time[static_cast<std::size_t>(activity)] += time;
+    sim::Ticks& sum = statistics_[node].time[static_cast<std::size_t>(activity)];
+    sum = sim::add_ticks(sum, time);
   }
   void spend(std::uint32_t node, const memory::Service& service) {
     cost::add_service(statistics_[node].time, service);

@@ -37,7 +37,7 @@ std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share
 
 // What the resource gives at its best, where that is more than the step gives.
 std::string at_best(const Help& help) {
-  return help.best && help.best->saved.value_or(0.0) > saved(help)
+  return help.best && help.best->saved && *help.best->saved > saved(help)
              ? fmt::format(" (at its best, {}: {})", describe(help.best->keys), percent(*help.best->saved))
              : std::string();
 }

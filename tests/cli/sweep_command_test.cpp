@@ -90,7 +90,8 @@ TEST_F(SweepCommand, EachPointIsWhatRunSays) {
     const Outcome run = marti("run " + quoted(config) + settings + " --json");
     ASSERT_EQ(run.status, 0) << run.output;
     // All figures of the run, with equal bits.
-    for (const auto& [name, value] : json::parse(run.output)["figures"]["machine"].items()) {
+    const json result = json::parse(run.output);
+    for (const auto& [name, value] : result["figures"]["machine"].items()) {
       EXPECT_EQ(point[name], value) << name << settings;
     }
   }

@@ -204,9 +204,8 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
     refresh(at);
   }
   void take(std::uint32_t node, Node& at, sim::Ticks now) {
-    cost::TimeDivision& time = statistics_[node].time;
-    time[static_cast<std::size_t>(cost::Activity::message_wait)] += now - at.since;
-    time[static_cast<std::size_t>(cost::Activity::messaging)] += receive_;
+    spend(node, cost::Activity::message_wait, now - at.since);
+    spend(node, cost::Activity::messaging, receive_);
     at.ray = at.queue.pop(rays_);
     if (input_.observer != nullptr) [[unlikely]] {
       watch(node, walk::NodeState::message_wait, now);

@@ -41,7 +41,7 @@ MachineConfig of_equal_key(test::Random& random, const MachineConfig& machine) {
   other.packets.height = machine.packets.height;
   other.cache = machine.cache;
   other.banks.interleave = machine.banks.interleave;
-  other.distribution.interleave = std::max(other.distribution.interleave, other.cache.cache.line);
+  other.distribution.interleave = std::max(other.distribution.interleave, other.reference_bytes());
   if (machine.cache.organisation == CacheOrganisation::unified) {
     const std::uint32_t sets = memory::shape_of(machine.cache.cache).sets;
     other.cache.cache.ways = static_cast<std::uint32_t>(test::pick(random, 1, 9));

@@ -47,6 +47,9 @@ void* operator new(std::size_t bytes) { return allocated(bytes == 0 ? 1 : bytes,
 void* operator new[](std::size_t bytes) {
   return allocated(bytes == 0 ? 1 : bytes, alignof(std::max_align_t));
 }
+void* operator new(std::size_t bytes, const std::nothrow_t& /*null*/) noexcept {
+  return fails() ? nullptr : std::malloc(bytes == 0 ? 1 : bytes);
+}
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocated(bytes, static_cast<std::size_t>(alignment));
 }

@@ -46,13 +46,13 @@ struct Units {
 };
 
 Units random_units(std::mt19937_64& random, std::uint64_t units, double noise) {
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal;
   Units all;
   for (std::uint64_t i = 0; i < units; ++i) {
     const auto hit_time = static_cast<double>(50 + random() % 400);
     const auto misses = static_cast<double>(random() % (1 + i));
     all.known.push_back({hit_time, misses});
-    all.times.push_back((7.0 * hit_time + 3.0 * misses) * std::exp(normal(random)));
+    all.times.push_back((7.0 * hit_time + 3.0 * misses) * std::exp(noise * normal(random)));
   }
   return all;
 }
