@@ -17,7 +17,9 @@ namespace marti::sim {
 /// events, whose first lies in the table of days itself, because most days have one event.
 class EventCalendar {
  public:
-  static constexpr std::uint32_t most_days = NumberSet::most;
+  /// The table of more days would not stay in the host's caches.
+  static constexpr std::uint32_t most_days = 65536;
+  static_assert(most_days <= NumberSet::most);
 
   /// `days` is a power of two, at most most_days.
   explicit EventCalendar(std::uint32_t days) : days_(days), mask_(days - 1), busy_(days) {}

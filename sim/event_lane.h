@@ -26,8 +26,8 @@ class EventLane {
   template <class Later, class Soon>
   void look_ahead(const Later& later, const Soon& soon) const {
     if (size_ != 0) {
-      later(events_[(first_ + std::min(size_ - 1, before_later)) & (events_.size() - 1)]);
-      soon(events_[(first_ + std::min(size_ - 1, before_soon)) & (events_.size() - 1)]);
+      later(at(std::min(size_ - 1, before_later)));
+      soon(at(std::min(size_ - 1, before_soon)));
     }
   }
 
@@ -65,6 +65,7 @@ class EventLane {
   static constexpr std::size_t before_soon = 3;
 
   Event& at(std::size_t number) { return events_[(first_ + number) & (events_.size() - 1)]; }
+  const Event& at(std::size_t number) const { return events_[(first_ + number) & (events_.size() - 1)]; }
 
   void grow() {
     LargeVector<Event> events(2 * events_.size());

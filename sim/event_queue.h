@@ -138,10 +138,9 @@ class EventQueue {
     heap_first_ = heap_.front();
   }
 
-  // Four to eight for each event, so that most days have at most one; but no more than the host's caches
-  // hold.
+  // Four to eight for each event, so that most days have at most one.
   [[nodiscard]] static std::uint32_t days_for(std::size_t events) {
-    constexpr std::size_t most = 65536;
+    constexpr std::size_t most = EventCalendar::most_days;
     const std::size_t days = events >= most ? most : 4 * std::bit_ceil(events);
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(days, fewest_days, most));
   }

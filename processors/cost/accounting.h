@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -126,6 +127,13 @@ struct alignas(64) NodeStatistics {
                       C{"finish", "ps", "when no packet was left", &NodeStatistics::finish}};
   }
 };
+
+// The waits begin a cache line, and the misses, which come first of the references, lie in one.
+static_assert((offsetof(NodeStatistics, time) +
+               static_cast<std::size_t>(Activity::interconnect_wait) * sizeof(sim::Ticks)) %
+                  64 ==
+              0);
+static_assert(offsetof(NodeStatistics, references) % 64 + sizeof(ReferenceCounts::misses) <= 64);
 
 /// The hits counted for one record kind.
 inline std::int64_t& hits_of(NodeStatistics& statistics, memory::RecordKind kind) {

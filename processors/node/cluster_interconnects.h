@@ -55,14 +55,6 @@ class ClusterInterconnects {
       interconnects_[cluster]->reply(port);
     }
   }
-  /// Prefetches what is kept for a port into the host's caches.
-  void prepare(std::uint32_t cluster, std::uint32_t port) const {
-    if (!buses_.empty()) [[likely]] {
-      buses_[cluster]->prepare(port);
-    } else {
-      interconnects_[cluster]->prepare(port);
-    }
-  }
 
  private:
   std::vector<memory::Interconnect*> interconnects_;

@@ -85,7 +85,7 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
-    Base::prepare_interconnect(node);
+    interconnect_of(node).prepare(port_of(node));
     if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory)) {
       return;  // most of these do not come to the node
     }

@@ -71,9 +71,6 @@ class PacketNodes : public NodeArray {
     const std::uint32_t cluster = cluster_of(node);
     interconnects_.read(cluster, clients_[cluster], transaction);
   }
-  void prepare_interconnect(std::uint32_t node) const {
-    interconnects_.prepare(cluster_of(node), port_of(node));
-  }
   void reply(std::uint32_t node, std::uint32_t port) {
     const std::uint32_t cluster = cluster_of(node);
     interconnects_.reply(cluster, clients_[cluster], port);
