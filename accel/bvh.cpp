@@ -164,7 +164,7 @@ void Bvh::order_records() {
 }
 
 template <class Node>
-void Bvh::make_records(CacheAligned<Node>& records) {
+void Bvh::make_records(sim::LargeVector<Node>& records) {
   records.resize(branches_);
   if constexpr (!requires { Node::first; }) {
     first_.resize(branches_);

@@ -14,7 +14,6 @@
 #include "accel/bvh_options.h"
 #include "accel/bvh_ray.h"
 #include "accel/bvh_walk.h"
-#include "accel/cache_aligned.h"
 #include "accel/mailbox.h"
 #include "accel/queries.h"
 #include "accel/ray.h"
@@ -22,6 +21,7 @@
 #include "accel/traversal.h"
 #include "accel/triangles.h"
 #include "sim/error.h"
+#include "sim/large_pages.h"
 
 namespace marti::accel {
 
@@ -56,10 +56,10 @@ class Bvh : public Queries<Bvh> {
   void number_nodes(const BvhBinaryTree& binary);
   void order_records();
   template <class Node>
-  void make_records(CacheAligned<Node>& records);
+  void make_records(sim::LargeVector<Node>& records);
 
   template <class Node>
-  [[nodiscard]] BvhView<Node> view(const CacheAligned<Node>& records) const {
+  [[nodiscard]] BvhView<Node> view(const sim::LargeVector<Node>& records) const {
     return {.nodes = records.data(),
             .first = first_.data(),
             .primitives = primitives_.data(),
@@ -102,10 +102,10 @@ class Bvh : public Queries<Bvh> {
   bool vectors_ = false;  ///< walks on vectors can be used
   /// By node number: a branch's record, a leaf's first BvhPrimitive; only while the tree is built.
   std::vector<std::uint32_t> place_;
-  CacheAligned<BvhNode<2>> two_;
-  CacheAligned<BvhNode<4>> four_;
-  CacheAligned<BvhNode<8>> eight_;
-  CacheAligned<BvhQuantisedNode> quantised_;
+  sim::LargeVector<BvhNode<2>> two_;
+  sim::LargeVector<BvhNode<4>> four_;
+  sim::LargeVector<BvhNode<8>> eight_;
+  sim::LargeVector<BvhQuantisedNode> quantised_;
 };
 
 }  // namespace marti::accel

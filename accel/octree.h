@@ -33,6 +33,7 @@
 #include "accel/triangles.h"
 #include "accel/visitor.h"
 #include "scenes/scene.h"
+#include "sim/large_pages.h"
 
 namespace marti::accel {
 
@@ -105,9 +106,9 @@ class Octree {
   RootFrame frame_;
   std::vector<LevelStatistics> levels_;
   bool cut_ = false;
-  CacheAligned<OctreeNode> nodes_;
-  CacheAligned<OctreeNode> packed_nodes_;
-  CacheAligned<TrianglePack> packs_;
+  sim::LargeVector<OctreeNode> nodes_;
+  sim::LargeVector<OctreeNode> packed_nodes_;
+  sim::LargeVector<TrianglePack> packs_;
 };
 
 }  // namespace marti::accel

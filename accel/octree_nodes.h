@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "accel/cache_aligned.h"
 #include "accel/frame.h"
 #include "accel/triangles.h"
 

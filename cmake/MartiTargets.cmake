@@ -83,10 +83,8 @@ function(marti_add_test name)
   if(NOT ARG_SHARDS)
     set(ARG_SHARDS 1)
   endif()
-  set(timeout 300)
-  if(MARTI_SANITIZE)
-    set(timeout 1500)  # the sanitizers slow some tests down by thirty
-  endif()
+  # The sanitizers slow some tests down by thirty, and ./test --full runs ten times as many cases.
+  set(timeout 1500)
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   if(ARG_ALONE)
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -41,6 +41,10 @@ class RecencyLists {
     }
     return place;
   }
+  /// Whether `line` is the newest of its set's list.
+  [[nodiscard]] [[gnu::always_inline]] bool newest(std::uint32_t line) const {
+    return lists_[index_(line)].lines[0] == line;
+  }
   /// Number of lines that the set of the line touched last had before, if touch() did not find that line.
   [[nodiscard]] std::uint32_t lines_before() const { return lines_before_; }
 

@@ -18,8 +18,15 @@ namespace {
 constexpr std::size_t unit = alignof(std::max_align_t);
 constexpr std::size_t smallest_piece = std::size_t{64} << 10U;
 constexpr std::size_t largest_piece = std::size_t{8} << 20U;
+constexpr std::size_t large_page = std::size_t{2} << 20U;
 
 std::atomic<std::size_t> pieces = 0;
+
+// Size of the next piece, when so many bytes have been taken.
+std::size_t next_size(std::size_t taken) {
+  const std::size_t next = std::clamp(taken / 4, smallest_piece, largest_piece);
+  return next < large_page / 4 ? next : (next + large_page - 1) / large_page * large_page;
+}
 
 // What stands before each table.
 struct alignas(unit) Label {
@@ -57,7 +64,7 @@ void* Chunks::table_at(Piece* piece, std::size_t at) {
 void* Chunks::allocate(std::size_t bytes) {
   const std::size_t taken = sizeof(Label) + (bytes + unit - 1) / unit * unit;
   if (piece_ == nullptr || taken > size_ - used_) {
-    const std::size_t next = std::clamp(taken_ / 4, smallest_piece, largest_piece);
+    const std::size_t next = next_size(taken_);
     // A table that would leave much of a piece unused has one of its own.
     if (taken > next / 4) {
       taken_ += taken;

@@ -35,13 +35,13 @@ struct alignas(64) Cursor {
   const std::uint32_t* word_end = nullptr;
   const std::uint32_t* line = nullptr;  ///< next line of the planned visit
   const std::uint32_t* line_end = nullptr;
-  memory::Address end = 0;  ///< one past the last byte of the current record
+  sim::Ticks visit_time = 0;  ///< of the planned visit's time, what is in `time` already
+  memory::Address end = 0;    ///< one past the last byte of the current record
   const std::uint32_t* entry = nullptr;
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
   std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
-  std::uint32_t list_count = 0;   ///< entries of the current leaf's list, as long as it is still to be read
-  std::uint32_t tests_begun = 0;  ///< of the planned visit, by kind as in tests_of_kind
+  std::uint32_t list_count = 0;  ///< entries of the current leaf's list, as long as it is still to be read
   memory::RecordKind kind = memory::RecordKind::node;
   Origin origin;  ///< of the current record; kept only where it is counted
   /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
@@ -59,20 +59,10 @@ inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
   cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
 }
 
-/// Adds to the cursor's time that of a planned visit up to `line`, before which `tests` tests have begun.
-inline void settle_visit(const cost::StepTicks& ticks, Cursor& cursor, const std::uint32_t* line,
-                         std::uint32_t tests) {
-  // The count of no kind decreases, so the subtraction of packed counts has no borrow between kinds.
-  const std::uint32_t begun = tests - cursor.tests_begun;
-  const std::uint32_t triangles = tests_of_kind(begun, accel::PrimitiveKind::triangle);
-  const std::uint32_t spheres = tests_of_kind(begun, accel::PrimitiveKind::sphere);
-  const std::uint32_t cones = tests_of_kind(begun, accel::PrimitiveKind::cone);
-  spend(cursor, ticks.test, triangles);
-  spend(cursor, ticks.sphere_test, spheres);
-  spend(cursor, ticks.cone_test, cones);
-  spend(cursor, ticks.lookup, std::int64_t{triangles} + spheres + cones);
-  spend(cursor, ticks.hit, line - cursor.line);
-  cursor.tests_begun = tests;
+/// Moves the cursor within a planned visit to `line`, which is asked for at `time` of the visit.
+inline void settle_visit(Cursor& cursor, const std::uint32_t* line, sim::Ticks time) {
+  cursor.time = sim::add_ticks(cursor.time, time - cursor.visit_time);
+  cursor.visit_time = time;
   cursor.line = line;
 }
 

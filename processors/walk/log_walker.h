@@ -28,7 +28,7 @@ namespace marti::processors::walk {
 
 /// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), one that counts
 /// (counted_caches.h; they may be guarded, too), or one that records its misses (stripped_log.cpp): its
-/// member record(time, kind, line) is called at each miss, which serves it and returns when.
+/// member record(time, kind, line) is called at each miss, and returns when it is served, a hit's time later.
 template <class Caches>
 class LogWalker {
  public:
@@ -168,7 +168,7 @@ class LogWalker {
   /// Moves the cursor past the reference that missed, which has been served.
   void pass(Cursor& cursor) const {
     if (in_visit(cursor)) {
-      ++cursor.line;
+      pass_line(cursor);
     } else {
       cursor.at = ((cursor.at >> unit_shift_) + 1) << unit_shift_;
     }
@@ -190,6 +190,11 @@ class LogWalker {
   }
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
+  // Moves the cursor past a line of a planned visit that took other time than a hit.
+  void pass_line(Cursor& cursor) const {
+    ++cursor.line;
+    cursor.visit_time += ticks_.hit;
+  }
   // Whether something is left of a step that is taken record by record.
   static bool in_step(const Cursor& cursor) {
     return cursor.at < cursor.end || cursor.list_count != 0 || cursor.entry != cursor.entry_end;
@@ -198,8 +203,10 @@ class LogWalker {
   template <bool RunAhead>
   Stop walk(View cache, Cursor& cursor, cost::NodeStatistics& statistics, VisitTally& tally) {
     Stop stop = Stop::hit;
-    if (Caches::present && in_visit(cursor) && !finish_visit(cache, cursor, statistics, stop)) {
-      return stop;
+    if constexpr (Caches::present && !records) {
+      if (in_visit(cursor) && !finish_visit(cache, cursor, statistics, stop)) {
+        return stop;
+      }
     }
     if (in_step(cursor) && (!touch<RunAhead>(cache, cursor, statistics, cursor.kind, stop) ||
                             !finish_leaf<RunAhead>(cache, cursor, statistics, stop))) {
@@ -254,26 +261,34 @@ class LogWalker {
       const std::uint32_t* const first = plan_->lines.data() + visit.begin;
       const std::uint32_t* const end = first + visit.lines;
       const std::uint32_t* line = first;
-      while (line != end && look_up(cache, line)) {
-        ++line;
-      }
       // All lines of a visit are counted as hits; miss() corrects the count.
       add(sum, visit.counts, statistics);
-      if (line == end) [[likely]] {
-        time = sim::add_ticks(time, visit.time);
-        continue;
+      if constexpr (records) {
+        for (; line != end; ++line) {
+          if (!look_up(cache, line)) {
+            const std::uint64_t label = label_of(line);
+            (void)caches_.record(sim::add_ticks(time, time_of_label(label)), kind_of_label(label), *line);
+          }
+        }
+      } else {
+        while (line != end && look_up(cache, line)) {
+          ++line;
+        }
+        if (line != end) [[unlikely]] {
+          cursor.time = time;
+          cursor.word = word + 1;
+          cursor.visit_time = 0;
+          cursor.line = first;
+          cursor.line_end = end;
+          if (!miss(cursor, statistics, line, stop) || !finish_visit(cache, cursor, statistics, stop)) {
+            tally = sum;
+            return false;
+          }
+          time = cursor.time;
+          continue;
+        }
       }
-      cursor.time =
-          sim::add_ticks(time, visit.counts.of(VisitCount::leaf) != 0 ? ticks_.leaf : ticks_.branch);
-      cursor.word = word + 1;
-      cursor.tests_begun = 0;
-      cursor.line = first;
-      cursor.line_end = end;
-      if (!miss(cursor, statistics, line, stop) || !finish_visit(cache, cursor, statistics, stop)) {
-        tally = sum;
-        return false;
-      }
-      time = cursor.time;
+      time = sim::add_ticks(time, visit.time);
     }
     cursor.word = word;
     cursor.time = time;
@@ -300,7 +315,7 @@ class LogWalker {
         ++missed;
       }
       if (missed == end) {
-        settle_visit(ticks_, cursor, end, tests_of_label(label_of(end - 1)));
+        settle_visit(cursor, end, time_of_label(label_of(end - 1)) + ticks_.hit);
       } else if (!miss(cursor, statistics, missed, stop)) {
         return false;
       }
@@ -310,13 +325,8 @@ class LogWalker {
 
   // `line` of a visit has missed. False when the node has to stop for it.
   bool miss(Cursor& cursor, cost::NodeStatistics& statistics, const std::uint32_t* line, Stop& stop) {
-    const std::uint32_t label = label_of(line);
-    settle_visit(ticks_, cursor, line, tests_of_label(label));
-    if constexpr (records) {
-      cursor.time = caches_.record(cursor.time, kind_of_label(label), *line);
-      ++cursor.line;
-      return true;
-    }
+    const std::uint64_t label = label_of(line);
+    settle_visit(cursor, line, time_of_label(label));
     --cost::hits_of(statistics, kind_of_label(label));
     ++cost::misses_of(statistics, kind_of_label(label));
     if (passes_misses_on_) {
@@ -324,11 +334,11 @@ class LogWalker {
       return false;
     }
     read_alone(cursor, statistics, line_bytes_);
-    ++cursor.line;
+    pass_line(cursor);
     return true;
   }
 
-  [[nodiscard]] std::uint32_t label_of(const std::uint32_t* line) const {
+  [[nodiscard]] std::uint64_t label_of(const std::uint32_t* line) const {
     return plan_->labels[static_cast<std::size_t>(line - plan_->lines.data())];
   }
 

@@ -35,15 +35,11 @@ class StrippedLog::BandWriter {
   [[nodiscard]] std::uint32_t ways() const { return ways_; }
 
   void begin_pixel() { since_ = 0; }
-  /// A reference at `time`, which takes until `end`. Since its line was asked for last, or since the packet
-  /// began, the packet has asked for `others` lines of its set; `again`: it has asked for this line before.
-  [[gnu::always_inline]] void refer(sim::Ticks time, sim::Ticks end, std::uint32_t what, std::uint32_t others,
-                                    bool again) {
-    const bool sure = ways_ != 0 && others >= ways_;
-    if (ways_ != 0 && again && !sure) {
-      return;
-    }
-    put(time - since_, sure ? what | sure_miss : what);
+  /// A reference that stays, at `time`, which takes until `end`. Since its line was asked for last, or since
+  /// the packet began, the packet has asked for `others` lines of its set.
+  [[gnu::always_inline]] void refer(sim::Ticks time, sim::Ticks end, std::uint32_t what,
+                                    std::uint32_t others) {
+    put(time - since_, ways_ != 0 && others >= ways_ ? what | sure_miss : what);
     since_ = end;
   }
   void end_pixel(sim::Ticks time) { put(time - since_, end_of_pixel); }
@@ -115,7 +111,11 @@ class StrippedLog::PacketCaches {
    public:
     explicit View(PacketCaches& all) : all_(all) {}
     [[gnu::always_inline]] bool access(memory::RecordKind kind, std::uint32_t line) const {
-      all_.last_ = all_.lists_[number_of(kind)].touch(line);
+      memory::RecencyLists<Depth>& lists = all_.lists_[number_of(kind)];
+      if (lists.newest(line)) {
+        return true;  // to move it changes nothing
+      }
+      all_.last_ = lists.touch(line);
       return all_.last_ < all_.taken_out_;
     }
 
@@ -125,12 +125,15 @@ class StrippedLog::PacketCaches {
   [[nodiscard]] View view(std::uint32_t /*node*/) { return View(*this); }
 
   /// Writes the reference for which access() has just returned false; returns its end.
-  [[gnu::always_inline]] sim::Ticks record(sim::Ticks time, memory::RecordKind kind, std::uint32_t line) {
+  [[gnu::noinline]] sim::Ticks record(sim::Ticks time, memory::RecordKind kind, std::uint32_t line) {
     const bool again = last_ < Depth;
     const std::uint32_t others = again ? last_ : lists_[number_of(kind)].lines_before();
     const sim::Ticks end = sim::add_ticks(time, hit_);
     for (BandWriter& writer : writers) {
-      writer.refer(time, end, line << what_bits | static_cast<std::uint32_t>(kind), others, again);
+      if (again && others < writer.ways()) {
+        break;  // a hit for these ways and for more
+      }
+      writer.refer(time, end, line << what_bits | static_cast<std::uint32_t>(kind), others);
     }
     return end;
   }
@@ -157,7 +160,7 @@ class StrippedLog::PacketCaches {
     }
   }
 
-  std::vector<BandWriter> writers;  ///< one for each stripped log
+  std::vector<BandWriter> writers;  ///< one for each stripped log, in the order of their ways
 
  private:
   static constexpr std::size_t caches = Split ? machine::split_caches : 1;
@@ -222,25 +225,26 @@ std::uint32_t StrippedLog::ways_of(const machine::MachineConfig& config) {
 template <class Caches>
 class StrippedLog::Stripper {
  public:
-  /// `left`: bytes that all threads together may still write.
-  Stripper(const ReplayInput& input, std::span<const std::uint32_t> ways, std::atomic<std::int64_t>& left,
-           sim::WorkMeter* meter)
+  /// Writes `logs`, which are in the order of their ways. `left`: bytes that all threads together may still
+  /// write.
+  Stripper(const ReplayInput& input, std::span<const std::shared_ptr<StrippedLog>> logs,
+           std::atomic<std::int64_t>& left, sim::WorkMeter* meter)
       : log_(input.log),
         packets_(input.config.packets),
-        walker_(input, Caches(input.config, std::max(1U, std::ranges::min(ways)))),
+        walker_(input, Caches(input.config, std::max(1U, logs.front()->ways_))),
+        logs_(logs),
         left_(left),
         meter_(meter) {
-    for (const std::uint32_t each : ways) {
-      walker_.caches().writers.emplace_back(each);
+    for (const auto& each : logs) {
+      walker_.caches().writers.emplace_back(each->ways_);
     }
   }
 
-  /// Strips row `number` of packets of each of `logs`.
-  void strip(std::uint32_t number, std::span<const std::shared_ptr<StrippedLog>> logs,
-             std::vector<PacketTotals>& totals) {
+  /// Strips row `number` of packets.
+  void strip(std::uint32_t number, std::vector<PacketTotals>& totals) {
     Caches& caches = walker_.caches();
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      caches.writers[i].begin_band(logs[i]->bands_[number]);
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      caches.writers[i].begin_band(logs_[i]->bands_[number]);
     }
     totals.reserve((log_.width - 1) / packets_.width + 1);
     const std::uint32_t y0 = number * packets_.height;
@@ -265,13 +269,14 @@ class StrippedLog::Stripper {
       x0 = x1;
     }
     for (BandWriter& writer : caches.writers) {
-      writer.end_band(fits, logs[0]->bands_.size());
+      writer.end_band(fits, logs_[0]->bands_.size());
     }
   }
 
-  void give_words(std::span<const std::shared_ptr<StrippedLog>> logs) {
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      walker_.caches().writers[i].give_words(*logs[i]);
+  /// Gives the logs the words that were written here.
+  void give_words() {
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      walker_.caches().writers[i].give_words(*logs_[i]);
     }
   }
 
@@ -296,6 +301,7 @@ class StrippedLog::Stripper {
   const program::WorkLog& log_;
   machine::PacketConfig packets_;
   LogWalker<Caches> walker_;
+  std::span<const std::shared_ptr<StrippedLog>> logs_;
   std::atomic<std::int64_t>& left_;
   sim::WorkMeter* meter_;
 };
@@ -340,23 +346,25 @@ std::vector<std::shared_ptr<const StrippedLog>> StrippedLog::make(const program:
     for (const std::uint32_t each : ways) {
       logs.emplace_back(new StrippedLog(log, key, each, plain.packets))->bands_.resize(bands);
     }
+    std::vector<std::shared_ptr<StrippedLog>> ascending = logs;
+    std::ranges::stable_sort(ascending, {}, [](const auto& each) { return each->ways_; });
     const auto totals = std::make_shared<Totals>(bands);
     std::atomic<std::int64_t> left = static_cast<std::int64_t>(
         std::min<std::uint64_t>(most_bytes, std::numeric_limits<std::int64_t>::max()));
     const auto strip_with = [&]<class Caches>() {
       tbb::enumerable_thread_specific<Stripper<Caches>> strippers(
-          [&] { return Stripper<Caches>(input, ways, left, meter); });
+          [&] { return Stripper<Caches>(input, ascending, left, meter); });
       tbb::parallel_for(std::size_t{0}, bands, [&](std::size_t number) {
         const bool fits = left >= 0;
         for (const std::shared_ptr<StrippedLog>& each : logs) {
           each->bands_[number].fits = fits;
         }
         if (fits) {
-          strippers.local().strip(static_cast<std::uint32_t>(number), logs, (*totals)[number]);
+          strippers.local().strip(static_cast<std::uint32_t>(number), (*totals)[number]);
         }
       });
       for (Stripper<Caches>& stripper : strippers) {
-        stripper.give_words(logs);
+        stripper.give_words();
       }
     };
     const std::uint32_t deepest = *std::max_element(ways.begin(), ways.end());

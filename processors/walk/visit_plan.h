@@ -56,7 +56,8 @@ struct VisitTally {
 };
 
 /// A planned visit; a leaf's tests all its entries, each after a look-up where there are mailboxes. A visit
-/// that does not fit (more than 255 of anything) has no lines and is taken record by record.
+/// that does not fit (more than 255 of anything, or a time of 2^61 ticks) has no lines and is taken record by
+/// record.
 struct alignas(32) Visit {
   std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines
   std::uint32_t lines = 0;
@@ -64,29 +65,25 @@ struct alignas(32) Visit {
   VisitCounts counts;
 };
 
-/// The tests of one kind in `tests`, eight bits for each: triangles lowest, then spheres, then cones.
-[[nodiscard]] constexpr std::uint32_t tests_of_kind(std::uint32_t tests, accel::PrimitiveKind kind) {
-  return (tests >> (8U * static_cast<unsigned>(kind))) & 0xffU;
-}
-
-/// A line's label: its record kind in the upper bits, the tests of the visit begun before it in the lower.
-inline constexpr unsigned label_bits = 29;
-[[nodiscard]] constexpr memory::RecordKind kind_of_label(std::uint32_t label) {
+/// A line's label: its record kind in the upper bits; in the lower the time from the beginning of the visit
+/// until the line is asked for, when every line before it hits.
+inline constexpr unsigned label_bits = 61;
+[[nodiscard]] constexpr memory::RecordKind kind_of_label(std::uint64_t label) {
   return static_cast<memory::RecordKind>(label >> label_bits);
 }
-[[nodiscard]] constexpr std::uint32_t tests_of_label(std::uint32_t label) {
-  return label & ((1U << label_bits) - 1U);
+[[nodiscard]] constexpr sim::Ticks time_of_label(std::uint64_t label) {
+  return static_cast<sim::Ticks>(label & ((std::uint64_t{1} << label_bits) - 1));
 }
 
 struct VisitPlan {
   sim::LargeVector<Visit> visits;          ///< one for each tree node
   sim::LargeVector<std::uint32_t> lines;   ///< line numbers, visit by visit
-  sim::LargeVector<std::uint32_t> labels;  ///< one for each line
+  sim::LargeVector<std::uint64_t> labels;  ///< one for each line
 
   [[nodiscard]] bool empty() const { return visits.empty(); }
 };
 
-/// Most lines a plan may hold (8 bytes each).
+/// Most lines a plan may hold (12 bytes each).
 inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
 
 /// The plan, or an empty one when the tree has more than most_planned_lines lines. `rank` is as in

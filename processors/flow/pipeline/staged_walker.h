@@ -40,7 +40,7 @@ class StagedWalker : public walk::LogWalker<Caches> {
     if (const walk::Visit* const visit = planned(*cursor.word)) {
       const std::uint32_t lines = visit->counts.of(walk::VisitCount::node_line);
       cost::hits_of(statistics, memory::RecordKind::node) += lines;
-      begin_lines(cursor, visit->begin, lines);
+      begin_lines(cursor, visit->begin, lines, ticks_.leaf);
       return;
     }
     cursor.kind = memory::RecordKind::node;
@@ -61,7 +61,7 @@ class StagedWalker : public walk::LogWalker<Caches> {
       Base::add(tally, visit->counts, statistics);
       --statistics.steps.leaves;
       cost::hits_of(statistics, memory::RecordKind::node) -= lines;
-      begin_lines(cursor, visit->begin + lines, visit->lines - lines);
+      begin_lines(cursor, visit->begin + lines, visit->lines - lines, ticks_.leaf + lines * ticks_.hit);
       return;
     }
     cursor.list_count = entries_read(word, input_.log.topology);
@@ -81,10 +81,11 @@ class StagedWalker : public walk::LogWalker<Caches> {
     const walk::Visit& visit = plan_->visits[program::operand_of(word)];
     return visit.lines == 0 ? nullptr : &visit;
   }
-  void begin_lines(walk::Cursor& cursor, std::uint32_t first, std::uint32_t lines) const {
+  // `time`: of the visit before them.
+  void begin_lines(walk::Cursor& cursor, std::uint32_t first, std::uint32_t lines, sim::Ticks time) const {
     cursor.line = plan_->lines.data() + first;
     cursor.line_end = cursor.line + lines;
-    cursor.tests_begun = 0;
+    cursor.visit_time = time;
   }
 };
 
