@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -31,34 +33,25 @@ std::string limits_line(const std::map<std::string, std::size_t>& count) {
 }  // namespace
 
 LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optional<keys::Prices>& prices) {
-  const tables::Table points = sweep::points_table(sweep);
+  tables::Table table = sweep::points_table(sweep);
   const StoredLimits limits(sweep, prices);
-  std::vector<tables::Column> columns(points.columns().begin(), points.columns().end());
-  const auto ordinal = static_cast<std::size_t>(
-      std::find_if(columns.begin(), columns.end(),
-                   [](const tables::Column& column) { return column.name == "ordinal"; }) -
-      columns.begin());
-  columns.push_back(
-      {"limit", tables::ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"});
-  columns.push_back(
-      {"limit_saves", tables::ColumnType::real, "fraction", "of the frame time that this saves, predicted"});
-  columns.push_back({"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"});
-  tables::Table table(points.name(), points.title(), columns);
+  const std::size_t ordinal = table.column("ordinal");
+  const std::array<tables::Column, 3> columns = {
+      {{"limit", tables::ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"},
+       {"limit_saves", tables::ColumnType::real, "fraction", "of the frame time that this saves, predicted"},
+       {"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"}}};
   std::map<std::string, std::size_t> count;
-  for (const std::vector<tables::Cell>& row : points.rows()) {
-    std::vector<tables::Cell> cells = row;
-    const std::optional<PointLimit> limit = limits.at(std::get<std::int64_t>(row.at(ordinal)));
+  table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {
+    const std::optional<PointLimit> limit = limits.at(std::get<std::int64_t>(row[ordinal]));
     const PredictedStep* const best = limit ? limit->best() : nullptr;
-    if (best != nullptr) {
-      cells.insert(cells.end(), {best->name, best->saved, best->rests_on});
-    } else {
-      cells.insert(cells.end(), {tables::Cell(), tables::Cell(), tables::Cell()});
-    }
     if (limit) {
       ++count[best != nullptr ? best->name : "nothing known"];
     }
-    table.add_row(std::move(cells));
-  }
+    if (best == nullptr) {
+      return std::vector<tables::Cell>(columns.size());
+    }
+    return {best->name, best->saved, best->rests_on};
+  });
   return {std::move(table), limits_line(count)};
 }
 

@@ -1,6 +1,7 @@
 #include "studies/tables/table.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -54,6 +55,23 @@ void Table::add_row(std::vector<Cell> cells) {
     sim::ensure(fits(cells[i], columns_[i].type), "a cell is not of its column's type");
   }
   rows_.push_back(std::move(cells));
+}
+
+void Table::add_columns(std::span<const Column> columns,
+                        const std::function<std::vector<Cell>(std::span<const Cell>)>& cells_of) {
+  std::vector<Column> all = columns_;
+  all.insert(all.end(), columns.begin(), columns.end());
+  Table wider(name_, title_, std::move(all));
+  for (std::vector<Cell>& row : rows_) {
+    // Each row is freed before the next one is made: a large table does not stand in memory twice.
+    const std::vector<Cell> old = std::exchange(row, {});
+    std::vector<Cell> cells;
+    cells.reserve(wider.columns_.size());
+    cells.insert(cells.end(), old.begin(), old.end());
+    std::ranges::move(cells_of(old), std::back_inserter(cells));
+    wider.add_row(std::move(cells));
+  }
+  *this = std::move(wider);
 }
 
 std::size_t Table::column(std::string_view name) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ class Table {
 
   /// Throws InternalError when the number of cells or a cell's type is not that of the columns.
   void add_row(std::vector<Cell> cells);
+
+  /// Adds columns behind the others; `cells_of` gives the cells of a row in them, from its other cells.
+  /// Throws InternalError like the constructor and add_row.
+  void add_columns(std::span<const Column> columns,
+                   const std::function<std::vector<Cell>(std::span<const Cell>)>& cells_of);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// One line for people.

@@ -21,7 +21,7 @@ namespace marti::studies::sweep {
 namespace {
 
 struct Row {
-  StoredPoint point;
+  double cost;
   std::vector<tables::Cell> figures;
 };
 
@@ -29,7 +29,7 @@ std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string>
   std::vector<Row> rows;
   reader.for_each_point(names, [&](const StoredPoint& point, std::span<const tables::Cell> cells) {
     if (point.done) {
-      rows.push_back({point, {cells.begin(), cells.end()}});
+      rows.push_back({point.cost, {cells.begin(), cells.end()}});
     }
   });
   return rows;
@@ -115,7 +115,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   std::erase_if(rows, [](const Row& row) { return !tables::number_of(row.figures.back()); });
   std::vector<figures::Offer> offers;
   for (const Row& row : rows) {
-    offers.push_back({row.point.cost, *tables::number_of(row.figures.back())});
+    offers.push_back({row.cost, *tables::number_of(row.figures.back())});
   }
   const std::optional<std::size_t> best = figures::best_within(offers, budget, better);
   if (offers.empty()) {

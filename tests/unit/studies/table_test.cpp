@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,23 @@ TEST(Table, ColumnsAreDescribed) {
   EXPECT_EQ(std::get<std::string>(described.at(2, "table_name")), "two");
   EXPECT_EQ(std::get<std::string>(described.at(0, "unit")), "ps");
   EXPECT_EQ(std::get<std::string>(described.at(1, "description")), "a name");
+}
+
+TEST(Table, ColumnsAreAddedBehindTheOthers) {
+  Table table("t", "", {{"a", ColumnType::integer, "1", ""}});
+  table.add_row({std::int64_t{1}});
+  table.add_row({std::int64_t{2}});
+  const auto twice = [](std::span<const Cell> row) {
+    return std::vector<Cell>{2 * std::get<std::int64_t>(row[0]), "x"};
+  };
+  const std::array<studies::tables::Column, 2> more = {
+      {{"b", ColumnType::integer, "1", ""}, {"c", ColumnType::text, "", ""}}};
+  table.add_columns(more, twice);
+  ASSERT_EQ(table.rows().size(), 2U);
+  EXPECT_EQ(std::get<std::int64_t>(table.at(1, "a")), 2);
+  EXPECT_EQ(std::get<std::int64_t>(table.at(1, "b")), 4);
+  EXPECT_EQ(std::get<std::string>(table.at(0, "c")), "x");
+  EXPECT_THROW(table.add_columns(more, twice), sim::InternalError) << "names are there already";
 }
 
 TEST(Table, TextIsAlignedAndInUnitsForPeople) {
