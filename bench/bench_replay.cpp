@@ -140,6 +140,34 @@ void run_stripped(bench::Report& report, const processors::program::WorkLog& log
   add("64 nodes, 4 KiB, 1 way, stripped log", timing.seconds, 3.0);
 }
 
+// 65,536 nodes, each with one packet of 2 x 2 pixels, beside 64 nodes with such packets.
+void run_large(bench::Report& report, const processors::program::WorkLog& log, double render, int repeats) {
+  const auto stripped = processors::walk::StrippedLog::make(log, machine_of(64, 2));
+  for (const bool distributed : {false, true}) {
+    for (const bool walks_stripped : {false, true}) {
+      const std::string name =
+          std::string(distributed ? ", distributed" : "") + (walks_stripped ? ", stripped" : "");
+      const auto time = [&](std::uint32_t nodes) {
+        processors::machine::MachineConfig machine = machine_of(nodes, 2);
+        machine.placement = distributed ? processors::machine::Placement::distributed
+                                        : processors::machine::Placement::shared;
+        return time_replay(log, machine, repeats, walks_stripped ? stripped.get() : nullptr);
+      };
+      const auto nanoseconds = [](const Timing& timing) { return 1e9 * timing.seconds / timing.references; };
+      const Timing few = time(64);
+      const Timing many = time(65536);
+      print(("64 nodes, 2x2" + name).c_str(), few, render, 0.0);
+      print(("65,536, 2x2" + name).c_str(), many, render, nanoseconds(few));
+      report.add(bench::against("a reference of 65,536 nodes" + name, "ns", nanoseconds(many),
+                                "of 64, same packets", nanoseconds(few),
+                                bench::Aim{distributed ? 4.0 : 3.0, false}));
+      if (!distributed && !walks_stripped) {
+        report.add({"a simulated node beside its tags", "B", static_cast<double>(many.bytes_per_node)});
+      }
+    }
+  }
+}
+
 // DRAM beside banks of fixed time: behind a slow bus, where it is nearly idle, and behind a fast crossbar,
 // where accesses queue.
 void run_dram(bench::Report& report, const processors::program::WorkLog& log, double render, int repeats) {
@@ -208,12 +236,9 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
   processors::machine::MachineConfig turns = machine_of(64, 8);
   turns.interconnect.arbitration = memory::Arbitration::round_robin;
   print("64 nodes, round robin", time_replay(*frame.log, turns, repeats), render, 0.0);
-  for (const std::uint32_t nodes : {64U, 65536U}) {
-    processors::machine::MachineConfig spread = machine_of(nodes, nodes == 64 ? 8 : 2);
-    spread.placement = processors::machine::Placement::distributed;
-    print(nodes == 64 ? "64 nodes, distributed" : "65,536 nodes, distributed",
-          time_replay(*frame.log, spread, repeats), render, 0.0);
-  }
+  processors::machine::MachineConfig spread = machine_of(64, 8);
+  spread.placement = processors::machine::Placement::distributed;
+  print("64 nodes, distributed", time_replay(*frame.log, spread, repeats), render, 0.0);
   const Timing one = time_replay(*frame.log, machine_of(1, 8), repeats);
   print("1 node, 8x8 packets", one, render, per_reference);
   report.add({"replay of one node", "M refs/s", rate(one), "", 0.0, std::nullopt, bench::Aim{200.0}});
@@ -222,21 +247,8 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
         per_reference);
   print("65,536 nodes, 8x8 packets", time_replay(*frame.log, machine_of(65536, 8), repeats), render,
         per_reference);
-  const Timing same = time_replay(*frame.log, machine_of(64, 2), repeats);
-  print("64 nodes, 2x2 packets", same, render, 0.0);
-  const Timing many = time_replay(*frame.log, machine_of(65536, 2), repeats);
-  print("65,536 nodes, 2x2 packets", many, render, 1e9 * same.seconds / same.references);
-  const auto stripped = processors::walk::StrippedLog::make(*frame.log, machine_of(64, 2));
-  const Timing same_stripped = time_replay(*frame.log, machine_of(64, 2), repeats, stripped.get());
-  print("64 nodes, 2x2, stripped log", same_stripped, render, 0.0);
-  const Timing many_stripped = time_replay(*frame.log, machine_of(65536, 2), repeats, stripped.get());
-  print("65,536 nodes, 2x2, stripped", many_stripped, render,
-        1e9 * same_stripped.seconds / same_stripped.references);
-  std::printf("events a miss %.2f; %zu host bytes a simulated node beside its tags\n",
-              base.events / base.misses, many.bytes_per_node);
-  report.add(bench::against("a reference of 65,536 nodes", "ns", 1e9 * many.seconds / many.references,
-                            "of 64, same packets", 1e9 * same.seconds / same.references));
-  report.add({"a simulated node beside its tags", "B", static_cast<double>(many.bytes_per_node)});
+  run_large(report, *frame.log, render, repeats);
+  std::printf("events a miss %.2f\n", base.events / base.misses);
   run_stripped(report, *frame.log, render, repeats);
   run_dram(report, *frame.log, render, repeats);
 }

@@ -9,7 +9,7 @@ namespace marti::sim {
 
 /// Memory that is taken in pieces and handed out from front to back. The first piece is small, and each
 /// further one is a quarter of all before; from half a megabyte on, pieces are whole large pages of 2 MiB,
-/// which cost few page faults. So at most about a fifth, or 2 MiB, is not handed out. A piece is freed when
+/// which cost few page faults. So at most about a fifth and 2 MiB are not handed out. A piece is freed when
 /// nobody uses a table in it any more and the object is gone or has come to its next piece. One object is for
 /// one thread; tables may be freed by any.
 class Chunks {

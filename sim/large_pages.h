@@ -1,5 +1,5 @@
 // Memory for tables that are accessed at random and exceed the reach of the host's TLBs: the system is asked
-// for large pages. Where there are none it is ordinary memory.
+// for large pages. Where there are none it is ordinary memory. Every array begins a cache line.
 #pragma once
 
 #include <algorithm>

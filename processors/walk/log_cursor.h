@@ -4,10 +4,8 @@
 #include <cstdint>
 
 #include "memory/record_kind.h"
-#include "processors/cost/step_time.h"
 #include "processors/machine/packets.h"
 #include "processors/walk/attribution.h"
-#include "processors/walk/visit_plan.h"
 #include "sim/time.h"
 
 namespace marti::processors::walk {
@@ -35,7 +33,7 @@ struct alignas(64) Cursor {
   const std::uint32_t* word_end = nullptr;
   const std::uint32_t* line = nullptr;  ///< next line of the planned visit
   const std::uint32_t* line_end = nullptr;
-  sim::Ticks visit_time = 0;  ///< of the planned visit's time, what is in `time` already
+  sim::Ticks visit_time = 0;  ///< how much of the planned visit's time is over, as if all its lines had hit
   memory::Address end = 0;    ///< one past the last byte of the current record
   const std::uint32_t* entry = nullptr;
   const std::uint32_t* entry_end = nullptr;
@@ -59,7 +57,8 @@ inline void spend(Cursor& cursor, sim::Ticks each, std::int64_t count) {
   cursor.time = sim::add_ticks(cursor.time, sim::multiply_ticks(each, count));
 }
 
-/// Moves the cursor within a planned visit to `line`, which is asked for at `time` of the visit.
+/// Moves the cursor within a planned visit to `line`, or to the visit's end, at `time` of the visit; all
+/// lines on the way hit.
 inline void settle_visit(Cursor& cursor, const std::uint32_t* line, sim::Ticks time) {
   cursor.time = sim::add_ticks(cursor.time, time - cursor.visit_time);
   cursor.visit_time = time;

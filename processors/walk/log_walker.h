@@ -28,7 +28,7 @@ namespace marti::processors::walk {
 
 /// `Caches` is a class of node_caches.h, one of these guarded (guarded_caches.h), one that counts
 /// (counted_caches.h; they may be guarded, too), or one that records its misses (stripped_log.cpp): its
-/// member record(time, kind, line) is called at each miss, and returns when it is served, a hit's time later.
+/// member record(time, kind, line) is called at each miss; it returns `time` and the time of a hit.
 template <class Caches>
 class LogWalker {
  public:
@@ -190,7 +190,8 @@ class LogWalker {
   }
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
-  // Moves the cursor past a line of a planned visit that took other time than a hit.
+  // Moves the cursor past a line of a planned visit that has missed. Its `time` has what that took; the
+  // visit's own time goes on as after a hit.
   void pass_line(Cursor& cursor) const {
     ++cursor.line;
     cursor.visit_time += ticks_.hit;
@@ -261,7 +262,8 @@ class LogWalker {
       const std::uint32_t* const first = plan_->lines.data() + visit.begin;
       const std::uint32_t* const end = first + visit.lines;
       const std::uint32_t* line = first;
-      // All lines of a visit are counted as hits; miss() corrects the count.
+      // All lines of a visit are counted as hits. miss() corrects the count; where misses are recorded, only
+      // the sum of hits and misses is used.
       add(sum, visit.counts, statistics);
       if constexpr (records) {
         for (; line != end; ++line) {

@@ -124,7 +124,8 @@ class StrippedLog::PacketCaches {
   };
   [[nodiscard]] View view(std::uint32_t /*node*/) { return View(*this); }
 
-  /// Writes the reference for which access() has just returned false; returns its end.
+  /// Writes the reference for which access() has just returned false; returns its end. Not inlined, because
+  /// with four ways and more it is rare, and the loop that calls it would be slower.
   [[gnu::noinline]] sim::Ticks record(sim::Ticks time, memory::RecordKind kind, std::uint32_t line) {
     const bool again = last_ < Depth;
     const std::uint32_t others = again ? last_ : lists_[number_of(kind)].lines_before();
@@ -160,7 +161,7 @@ class StrippedLog::PacketCaches {
     }
   }
 
-  std::vector<BandWriter> writers;  ///< one for each stripped log, in the order of their ways
+  std::vector<BandWriter> writers;  ///< one for each stripped log, in ascending order of their ways
 
  private:
   static constexpr std::size_t caches = Split ? machine::split_caches : 1;
@@ -171,7 +172,8 @@ class StrippedLog::PacketCaches {
 
   std::uint32_t taken_out_;
   sim::Ticks hit_;
-  std::uint32_t last_ = 0;  // place of the last reference's line in its set's list
+  // Place in its set's list of the line that was asked for last without being its set's newest.
+  std::uint32_t last_ = 0;
   std::vector<memory::RecencyLists<Depth>> lists_;
 };
 
@@ -225,8 +227,8 @@ std::uint32_t StrippedLog::ways_of(const machine::MachineConfig& config) {
 template <class Caches>
 class StrippedLog::Stripper {
  public:
-  /// Writes `logs`, which are in the order of their ways. `left`: bytes that all threads together may still
-  /// write.
+  /// Writes `logs`, which are in ascending order of their ways. `left`: bytes that all threads together may
+  /// still write.
   Stripper(const ReplayInput& input, std::span<const std::shared_ptr<StrippedLog>> logs,
            std::atomic<std::int64_t>& left, sim::WorkMeter* meter)
       : log_(input.log),

@@ -1,5 +1,6 @@
 #include "processors/walk/visit_plan.h"
 
+#include "accel/quadric_shape.h"
 #include "processors/walk/node_order.h"
 #include "sim/error.h"
 
@@ -27,7 +28,7 @@ class Planner {
     }
   }
 
-  // The time is that of one.
+  // `time`: what one takes.
   void count(VisitCount what, sim::Ticks time) {
     fits_ = fits_ && counts_.of(what) < most_of_a_count;
     if (fits_) {
@@ -74,16 +75,16 @@ class Planner {
     visit.lines = static_cast<std::uint32_t>(plan_.lines.size() - begin_);
     visit.counts = counts_;
     visit.time = time_;
-    if (time_ == most_time) {
-      visit.lines = 0;
-    }
   }
 
  private:
   static constexpr sim::Ticks most_time = (sim::Ticks{1} << label_bits) - 1;
 
   // A visit that takes too long may never be made, so it must not stop the run.
-  void spend(sim::Ticks time) { time_ = time < most_time - time_ ? time_ + time : most_time; }
+  void spend(sim::Ticks time) {
+    fits_ = fits_ && time <= most_time - time_;
+    time_ += fits_ ? time : 0;
+  }
 
   const memory::Layout& layout_;
   unsigned line_shift_;
@@ -91,7 +92,7 @@ class Planner {
   VisitPlan& plan_;
   std::size_t begin_ = 0;
   VisitCounts counts_;
-  sim::Ticks time_ = 0;  // at most most_time, which stands for all beyond
+  sim::Ticks time_ = 0;
   bool fits_ = true;
 };
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 
-#include "accel/quadric_shape.h"
 #include "memory/layout.h"
 #include "processors/cost/step_time.h"
 #include "processors/program/work_log.h"
@@ -56,8 +55,7 @@ struct VisitTally {
 };
 
 /// A planned visit; a leaf's tests all its entries, each after a look-up where there are mailboxes. A visit
-/// that does not fit (more than 255 of anything, or a time of 2^61 ticks) has no lines and is taken record by
-/// record.
+/// that does not fit (more than 255 of anything, or 2^61 ticks) has no lines and is taken record by record.
 struct alignas(32) Visit {
   std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines
   std::uint32_t lines = 0;
@@ -84,7 +82,7 @@ struct VisitPlan {
 };
 
 /// Most lines a plan may hold (12 bytes each).
-inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 28U;
+inline constexpr std::uint64_t most_planned_lines = std::uint64_t{1} << 27U;
 
 /// The plan, or an empty one when the tree has more than most_planned_lines lines. `rank` is as in
 /// ReplayInput::node_rank.

@@ -62,13 +62,15 @@ void Table::add_columns(std::span<const Column> columns,
   std::vector<Column> all = columns_;
   all.insert(all.end(), columns.begin(), columns.end());
   Table wider(name_, title_, std::move(all));
+  wider.rows_.reserve(rows_.size());
   for (std::vector<Cell>& row : rows_) {
+    std::vector<Cell> added = cells_of(row);
     // Each row is freed before the next one is made: a large table does not stand in memory twice.
-    const std::vector<Cell> old = std::exchange(row, {});
+    std::vector<Cell> old = std::exchange(row, {});
     std::vector<Cell> cells;
     cells.reserve(wider.columns_.size());
-    cells.insert(cells.end(), old.begin(), old.end());
-    std::ranges::move(cells_of(old), std::back_inserter(cells));
+    std::ranges::move(old, std::back_inserter(cells));
+    std::ranges::move(added, std::back_inserter(cells));
     wider.add_row(std::move(cells));
   }
   *this = std::move(wider);

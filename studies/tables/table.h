@@ -37,7 +37,7 @@ class Table {
   void add_row(std::vector<Cell> cells);
 
   /// Adds columns behind the others; `cells_of` gives the cells of a row in them, from its other cells.
-  /// Throws InternalError like the constructor and add_row.
+  /// Throws InternalError like the constructor, and like add_row, after which the table is of no use.
   void add_columns(std::span<const Column> columns,
                    const std::function<std::vector<Cell>(std::span<const Cell>)>& cells_of);
 

@@ -81,7 +81,7 @@ class StagedWalker : public walk::LogWalker<Caches> {
     const walk::Visit& visit = plan_->visits[program::operand_of(word)];
     return visit.lines == 0 ? nullptr : &visit;
   }
-  // `time`: of the visit before them.
+  // `time`: what the visit takes before the first of them, when all lines hit.
   void begin_lines(walk::Cursor& cursor, std::uint32_t first, std::uint32_t lines, sim::Ticks time) const {
     cursor.line = plan_->lines.data() + first;
     cursor.line_end = cursor.line + lines;
