@@ -227,6 +227,9 @@ class Updater {
     if (!old_.nodes[item.old].leaf) {
       std::sort(stayed_.begin(), stayed_.end());
       stayed_.erase(std::unique(stayed_.begin(), stayed_.end()), stayed_.end());
+      if (stayed_.size() + come.size() < item.count) {
+        add_lost(item);
+      }
     }
     list_.clear();
     std::merge(stayed_.begin(), stayed_.end(), come.begin(), come.end(), std::back_inserter(list_));
@@ -247,6 +250,33 @@ class Updater {
         stayed_.push_back(id);
       }
     }
+  }
+
+  /// Adds the unmoved primitives that the item lists, but no leaf below its old node: a cone may be listed
+  /// for a cell without need (quadric_overlap.h), and then for none of the cell's children.
+  void add_lost(const Item& item) {
+    std::vector<std::uint32_t> lost;
+    for (std::uint32_t id = 0; id < is_.size(); ++id) {
+      if (!moved_[id] && !std::binary_search(stayed_.begin(), stayed_.end(), id)) {
+        lost.push_back(id);
+      }
+    }
+    // An item lists what each cell above it sorts into the child that leads to it.
+    for (std::uint32_t level = 1; level < level_.number; ++level) {
+      const std::uint32_t below = level_.number - level;
+      OctreeCell cell{level, {}};
+      std::uint32_t child = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        cell.at[a] = item.at[a] >> below;
+        child |= ((item.at[a] >> (below - 1)) & 1U) << a;
+      }
+      const ChildSorter<double> sorter(frame_, cell);
+      std::uint32_t tests = 0;
+      std::erase_if(lost,
+                    [&](std::uint32_t id) { return ((sorter.children(is_, id, tests) >> child) & 1U) == 0; });
+    }
+    const auto added = stayed_.insert(stayed_.end(), lost.begin(), lost.end());
+    std::inplace_merge(stayed_.begin(), added, stayed_.end());
   }
 
   /// Sorts moved triangles, with their coordinates in `triangles`, into lists for the children; returns the

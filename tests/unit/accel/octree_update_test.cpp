@@ -135,28 +135,27 @@ void check_report(const Octree& before, const Octree& fresh, const OctreeUpdate&
   }
 }
 
-RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
-  OctreeOptions options = enclosing(2.0);
-  options.max_objects = *rc::gen::inRange(1U, 20U);
-  options.max_level = *rc::gen::inRange(1U, 8U);
-  options.max_entries =
-      *rc::gen::element<std::uint64_t>(400, 2000, std::uint64_t{1} << 25, std::uint64_t{1} << 25);
-  const std::vector<TriangleCorners> soup =
-      studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>());
-  // Spheres, cylinders and cones among them, half the time.
+/// A frame: the share of primitives that move before it, and the seed of their moves.
+struct Moves {
+  double share = 0.0;
+  std::uint64_t seed = 0;
+};
+
+/// Several frames, each updated from the one before and compared with a fresh build.
+void check_frames(const OctreeOptions& options, std::uint64_t seed, bool with_quadrics,
+                  const std::array<Moves, 3>& frames) {
+  std::vector<TriangleCorners> now = studies::stability::hostile_soup(0.0, seed);
+  // Spheres, cylinders and cones among them.
   std::vector<scenes::Quadric> quadrics;
-  if (*rc::gen::arbitrary<bool>()) {
+  if (with_quadrics) {
     quadrics = some_quadrics(1);
   }
-  Octree tree = Octree::build(std::make_shared<const TriangleSet>(soup, quadrics), options);
-  // Several frames, each from the one before.
-  std::vector<TriangleCorners> now = soup;
-  for (int frame = 0; frame < 3; ++frame) {
-    const double share = *rc::gen::element(0.0, 0.003, 0.02, 0.3, 1.0);
-    now = some_moved(now, *rc::gen::arbitrary<std::uint64_t>(), share);
+  Octree tree = Octree::build(std::make_shared<const TriangleSet>(now, quadrics), options);
+  for (const Moves& frame : frames) {
+    now = some_moved(now, frame.seed, frame.share);
     std::uint32_t others = 0;
     for (scenes::Quadric& quadric : quadrics) {
-      if (share > 0.0 && (share >= 0.3 || others == 0)) {
+      if (frame.share > 0.0 && (frame.share >= 0.3 || others == 0)) {
         quadric.radius = quadric.radius > 0.2 ? 0.1 : quadric.radius + 0.01;
         ++others;
       }
@@ -173,6 +172,31 @@ RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
     check_report(tree, fresh, update);
     tree = Octree(after, options, tree.frame(), std::move(update.build));
   }
+}
+
+RC_GTEST_PROP(OctreeUpdating, GivesTheTreeOfAFreshBuild, ()) {
+  OctreeOptions options = enclosing(2.0);
+  options.max_objects = *rc::gen::inRange(1U, 20U);
+  options.max_level = *rc::gen::inRange(1U, 8U);
+  options.max_entries =
+      *rc::gen::element<std::uint64_t>(400, 2000, std::uint64_t{1} << 25, std::uint64_t{1} << 25);
+  const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+  const bool with_quadrics = *rc::gen::arbitrary<bool>();
+  std::array<Moves, 3> frames;
+  for (Moves& frame : frames) {
+    frame = {*rc::gen::element(0.0, 0.003, 0.02, 0.3, 1.0), *rc::gen::arbitrary<std::uint64_t>()};
+  }
+  check_frames(options, seed, with_quadrics, frames);
+}
+
+// A cone that is listed for a cell without need, and for none of the cell's children, stands in no leaf
+// below; but it stands in the leaf that the cell becomes.
+TEST(OctreeUpdating, ListsWhatNoLeafBelowListed) {
+  OctreeOptions options = enclosing(2.0);
+  options.max_objects = 12;
+  options.max_level = 5;
+  EXPECT_NO_THROW(
+      check_frames(options, 2081819264491, true, {{{0.3, 675220610}, {0.0, 0}, {0.02, 11704956984}}}));
 }
 
 // One gear of eight moves: nodes far from it are kept, and few primitives are sorted.
