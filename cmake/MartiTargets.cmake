@@ -78,12 +78,14 @@ endfunction()
 # marti_add_test(<name> SOURCES ... [ALONE sources...] [LIBS ...] [SHARDS n]): one GoogleTest program. CTest runs it as
 # one test or, where it takes long, as n tests that share its cases among them, so that they can run side by side.
 # ALONE: sources whose local names clash with those of others, so a unity build compiles them by themselves.
-# A test may take 25 minutes: the sanitizers slow some down by thirty, and ./test --full runs ten times as many cases of
-# each property.
 function(marti_add_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;ALONE;LIBS" ${ARGN})
   if(NOT ARG_SHARDS)
     set(ARG_SHARDS 1)
+  endif()
+  set(timeout 300)
+  if(MARTI_SANITIZE)
+    set(timeout 1500)  # the sanitizers slow some tests down by thirty
   endif()
   add_executable(${name} ${ARG_SOURCES} ${ARG_ALONE})
   if(ARG_ALONE)
@@ -99,7 +101,7 @@ function(marti_add_test name)
       set(test ${name}_${shard})
     endif()
     add_test(NAME ${test} COMMAND ${name})
-    set_tests_properties(${test} PROPERTIES TIMEOUT 1500
+    set_tests_properties(${test} PROPERTIES TIMEOUT ${timeout}
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
   endforeach()
 endfunction()

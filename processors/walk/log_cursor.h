@@ -39,7 +39,7 @@ struct alignas(64) Cursor {
   const std::uint32_t* entry_end = nullptr;
   const std::uint32_t* tested = nullptr;  ///< of a mailed leaf: a bit for each entry; null: all are tested
   std::uint32_t entry_number = 0;         ///< of `entry` in the mailed leaf's list
-  std::uint32_t list_count = 0;  ///< entries of the current leaf's list, as long as it is still to be read
+  std::uint32_t list_count = 0;  ///< entries of the current leaf's list; 0 once the list has been read
   memory::RecordKind kind = memory::RecordKind::node;
   Origin origin;  ///< of the current record; kept only where it is counted
   /// Guarded caches only: the branch whose record was visited last and whose children may be prefetched.
