@@ -261,7 +261,7 @@ class Updater {
         lost.push_back(id);
       }
     }
-    // An item lists what each cell above it sorts into the child that leads to it.
+    // The item lists a primitive that every cell above puts into the child on the way down to the item.
     for (std::uint32_t level = 1; level < level_.number; ++level) {
       const std::uint32_t below = level_.number - level;
       OctreeCell cell{level, {}};

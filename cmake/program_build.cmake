@@ -1,9 +1,10 @@
-# cmake -DROOT=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source with the hash of the
-# libraries' sources. Paths are hashed too; the output changes only when a path or the content of a file does.
+# cmake -DROOT=... -DFOLDERS=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source with the hash of
+# the sources in these folders of ROOT. Paths are hashed too; the output changes only when a path or the content of a file
+# does.
 cmake_minimum_required(VERSION 3.25)
 
 set(files "")
-foreach(folder sim scenes accel memory processors)
+foreach(folder IN LISTS FOLDERS)
   file(GLOB_RECURSE found RELATIVE "${ROOT}" "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp")
   list(APPEND files ${found})
 endforeach()

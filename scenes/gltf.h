@@ -4,10 +4,11 @@
 // sparse accessors; positions, normals, the base colour texture's coordinates; morph targets of positions and
 // normals (section 3.7.2.2); skins with any number of joints a vertex (3.7.3); animations of nodes and morph
 // weights (3.11, Appendix C); materials; perspective cameras; KHR_lights_punctual,
-// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength; where marti is built with
-// their libraries KHR_draco_mesh_compression and EXT_meshopt_compression, of the whole file. Left out with a
-// note: points and lines, displacements of texture coordinates, other textures, alpha modes. One source
-// triangle is one polygon. Indices below 0 count as "not given" where glTF allows that.
+// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength, KHR_mesh_quantization;
+// where marti is built with their libraries KHR_draco_mesh_compression and EXT_meshopt_compression (also
+// under its name KHR_meshopt_compression), of the whole file. Left out with a note: points and lines,
+// displacements of texture coordinates, other textures, alpha modes. One source triangle is one polygon.
+// Indices below 0 count as "not given" where glTF allows that.
 //
 // Motion. The static pose (nodes, morph weights and joints as in the file, no animation) decides which
 // triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A

@@ -71,14 +71,14 @@ class LoadOrder {
   }
 
  private:
-  // Makes sets for loads up to this one, which least() then tries first if it is the least.
+  // Makes sets for loads up to `load`, and lets least() begin at `load` if that is lower.
   void reach(std::uint32_t load) {
     if (load >= loads_) [[unlikely]] {
       make_sets(load + 1);
     }
     least_ = load < least_ ? load : least_;
   }
-  // Not inlined, so that what calls it on the few occasions needs no registers for it.
+  // Not inlined: it is called rarely, and its caller then needs no registers for it.
   [[gnu::noinline]] void make_sets(std::uint32_t loads) {
     loads_ = loads;
     bits_.resize(std::size_t{loads} * words_of_set_);

@@ -42,7 +42,8 @@ struct BuildCounts {
         C{"children", "1", "children made", &BuildCounts::children},
         C{"entries", "1", "entries of children's lists written", &BuildCounts::entries},
         C{"written_bytes", "byte", "records and lists written", &BuildCounts::written_bytes},
-        C{"writes", "1", "write transactions of it; none to a node's own memory", &BuildCounts::writes},
+        C{"writes", "1", "write transactions of records and lists; none to a node's own memory",
+          &BuildCounts::writes},
         C{"local_misses", "1", "misses that the node's own memory served", &BuildCounts::local_misses},
         C{"invalidations", "1", "lines taken out of other nodes' caches", &BuildCounts::invalidations}};
   }

@@ -37,7 +37,7 @@ class BuildingNodes : public Base {
 
   static constexpr std::uint32_t none = DynamicCursor::none;
 
-  // What a worker waits for that has not won a lock; a time is -1 while it is not known.
+  // The wait of a worker that did not win a lock; a time that is not known yet is -1.
   struct LockWait {
     sim::Ticks arrived = 0;             // when the lock transaction is done
     sim::Ticks published = 0;           // when the branch can be seen

@@ -8,8 +8,8 @@
 
 namespace marti::processors::walk {
 
-/// How far a node has come in the log: so many words of a pixel's have been taken. The step that they end
-/// with is the one that the node is at.
+/// How far a node has come in the log: the pixel, and how many of its words the node has taken. The last of
+/// these belongs to the step that the node is at.
 struct LogPlace {
   static constexpr std::uint32_t nowhere = 0xffffffffU;
   std::uint32_t pixel = nowhere;  ///< y * width + x; `nowhere`: the work is for no pixel

@@ -19,7 +19,7 @@
 
 namespace marti::processors::walk {
 
-/// Base classes that mark caches which count, and others: only the former have the member `counted`.
+/// Base classes of caches: CountedMark, with the member `counted`, of those that count, and UncountedMark.
 struct CountedMark {
   static constexpr bool counted = true;
 };

@@ -32,7 +32,8 @@ struct LeftOut {
 /// one context, a given tree and a unified cache, without detailed counts, can do without.
 [[nodiscard]] const char* why_lookups(const machine::MachineConfig& config, const memory::Layout& layout);
 
-/// Why reads must be events on this machine; null when they need not. Only such nodes can do without.
+/// Why reads must be events on this machine; null when they need not. Only the nodes named at
+/// why_lookups() can do without.
 [[nodiscard]] const char* why_read_events(const machine::MachineConfig& config);
 
 }  // namespace marti::processors::walk

@@ -30,8 +30,8 @@ class LinesUnderWay {
   [[nodiscard]] std::uint32_t find_in_any(std::uint32_t line, sim::Ticks time) {
     return find_if(time, [line](Key other) { return static_cast<std::uint32_t>(other) == line; });
   }
-  /// Transaction `slot`, which has no other line under way, asks for the line at `time`. It replaces an
-  /// earlier transaction for the line, if one is under way whose line has been pushed out since.
+  /// Transaction `slot`, which has no other line under way, asks for the line at `time`. If an
+  /// earlier transaction for the line is under way (the line was pushed out since), this one replaces it.
   void begin(Key key, std::uint32_t slot, sim::Ticks time) {
     std::erase_if(flights_, [&](const Flight& flight) { return flight.done <= time || flight.key == key; });
     flights_.push_back({key, never, slot});

@@ -190,8 +190,8 @@ class LogWalker {
   }
 
   static bool in_visit(const Cursor& cursor) { return cursor.line != cursor.line_end; }
-  // Moves the cursor past a line of a planned visit that has missed. Its `time` has what that took; the
-  // visit's own time goes on as after a hit.
+  // Moves the cursor past a line of a planned visit that has missed. The cursor's `time` includes
+  // the miss already; `visit_time` goes on as if the line had hit.
   void pass_line(Cursor& cursor) const {
     ++cursor.line;
     cursor.visit_time += ticks_.hit;

@@ -56,8 +56,8 @@ class StrippedLog::BandWriter {
     const std::size_t bytes = words_.size() * sizeof(words_[0]) + at_end_.size() * sizeof(at_end_[0]);
     return static_cast<std::int64_t>(bytes - std::exchange(bytes_, bytes));
   }
-  // The words are written into tables that are kept from band to band, and copied at their exact size. There
-  // are so many bands in all.
+  // The words are written into tables that are kept from band to band, and copied at their exact size.
+  // `bands`: the number of all bands of the log.
   void end_band(bool fits, std::size_t bands) {
     band_->fits = fits && excess_ == 0;
     if (band_->fits) {

@@ -1,8 +1,8 @@
 // Walks a node through a stripped log (processors/walk/stripped_log.h), in LogWalker's place.
 //
 // The cache of a node is empty when it begins its first packet. References of LRU caches that would be looked
-// up are first ones of the packet, so all of them miss then, and the tags are not touched. They get the lines
-// of the first packet when the node begins its second; a node that never does takes no memory for tags.
+// up are first ones of the packet, so all of them miss then, and the tags stay untouched. The tags get the
+// lines of the first packet when the node begins its second; a node that never does takes no memory for tags.
 #pragma once
 
 #include <bit>
@@ -50,8 +50,8 @@ class StrippedWalker {
       cursor.tags = Tags::present;
     }
     cursor.stripped = stripped_.packet(cursor.x, cursor.y).words.data();
-    // The end of the packet adds all its references and takes the misses away again, those of this packet
-    // being left.
+    // The end of the packet counts all its references as hits and subtracts all misses so far from them. With
+    // the earlier misses added here, only those of this packet are subtracted.
     cost::ReferenceCounts& counts = statistics.references;
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
       counts.hits[kind] += counts.misses[kind];

@@ -29,7 +29,7 @@ namespace marti::processors::walk {
   service.done = done;
   return service;
 }
-/// Whether a read for which a node has waited was such an access: the parts of any other add up to its time.
+/// Whether the node waited for a cache access as above: of these alone all four parts are 0.
 [[nodiscard]] inline bool is_cache_access(const memory::Service& service) {
   return service.wait_interconnect + service.transfer + service.wait_bank + service.bank == 0;
 }

@@ -24,7 +24,7 @@ void for_each_weighted(std::span<const Stratum> strata, const Use& use) {
   }
 }
 
-// What an expected miss counts for beside what its share of the hit time counts for: the slope of `measured`
+// What an expected miss adds to what the hit time explains already: the slope of `measured`
 // over the misses, both less what is proportional to the hit time. 0 where all misses are proportional to it.
 double slope_of_misses(std::span<const Stratum> strata, std::span<const KnownWork> known,
                        std::span<const double> measured, double misses_of_time) {

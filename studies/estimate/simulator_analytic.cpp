@@ -53,7 +53,7 @@ Contention contention_of(const MachineConfig& machine, const Tenures& tenures, c
     return contention;
   }
   // One cycle of the network is one miss. What posted writes demand of the queues is added to the cycle that
-  // they belong to, and its think time is shorter by as much (as in processors::predict).
+  // they belong to, and its think time is shorter by as much (as in replay::predict()).
   std::vector<double> demands = {contention.interconnect / misses};
   if (tenures.bank_busy > 0.0) {
     const double each = (misses + work.writes) * tenures.bank_busy / machine.banks.count / misses;
@@ -63,7 +63,7 @@ Contention contention_of(const MachineConfig& machine, const Tenures& tenures, c
   const double cycle = (alone + work.packets * work.dispatch) / misses;
   const double think = std::max(0.0, cycle - demand);
   // Exact mean values, one customer more at a time (Reiser and Lavenberg 1980); throughputs of all numbers of
-  // customers are needed, which processors::mean_values() does not give.
+  // customers are needed, which theory::mean_values() does not give.
   std::vector<double> queues(demands.size(), 0.0);
   for (std::size_t n = 1; n <= nodes; ++n) {
     double around = think;

@@ -19,9 +19,9 @@ namespace {
 constexpr std::uint64_t shortest_window = 16;
 constexpr double not_bounded = std::numeric_limits<double>::infinity();
 
-// The misses of a pixel whose neighbour the node has just walked. Those that it has after itself do not fit
-// the cache together; and one pixel's step brings in a fraction of the lines that the lattice's step brings
-// in.
+// The misses of a pixel whose neighbour the node has just walked: those that it has when it is walked twice
+// in a row (misses_again), because its lines do not fit the cache together; and a share of the others,
+// because a step of one pixel brings in fewer lines than a step of the lattice.
 double expected_misses(const processors::passes::PixelFigures& pixel) {
   const auto brought_in = static_cast<double>(std::max<std::int64_t>(0, pixel.misses - pixel.misses_again));
   return static_cast<double>(pixel.misses_again) + brought_in / PixelLattice::step;
@@ -78,7 +78,7 @@ std::vector<sim::Ticks> packet_times(const LatticeWork& work, const RegressionEs
   return ticks;
 }
 
-// Makes the windows' part of a total of which `other` is known what is not known of the frame time.
+// Sets the error of the frame time to that of `part`; `other` adds to the total and has no error.
 void describe_end(const RegressionEstimate& part, double other, const LatticeWork& work,
                   SampledMachine& sampled) {
   const double all = part.total + other;

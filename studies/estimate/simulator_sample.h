@@ -46,12 +46,11 @@ class LatticeWork {
 
 /// One machine's figures by the windows drawn.
 struct SampledMachine {
-  Estimate estimate;  ///< without the speed-up
-  std::vector<double>
-      residues;               ///< what of each window's share in the frame time is not known, relative to it
+  Estimate estimate;             ///< without the speed-up
+  std::vector<double> residues;  ///< of each window: measured less estimated, as a share of the frame time
   KnownWork counts_for;       ///< what a tick of all hit times, and an expected miss, are of the frame time
   std::uint64_t degrees = 0;  ///< of freedom
-  double lattice = 0.0;       ///< what the lattice has of the half-width of the frame time
+  double lattice = 0.0;       ///< the lattice's part of the half-width of the frame time
 };
 
 /// A sample in two phases (Cochran 1977, sections 12.6 and 12.8). The lattice's pixels, which are many, say

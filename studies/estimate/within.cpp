@@ -76,7 +76,7 @@ double share_for(const PacketWindows& windows, std::uint64_t degrees, double lat
   const double drawn =
       2.0 * static_cast<double>(windows.strata().size()) / static_cast<double>(windows.windows());
   const double student = student_95(std::max(degrees, many_degrees)) / student_95(degrees);
-  // By one standard error of a standard deviation from so many degrees of freedom.
+  // Widened by one standard error of a standard deviation with so many degrees of freedom.
   const double margin = 1.0 + 1.0 / std::sqrt(2.0 * static_cast<double>(degrees));
   const double own = margin * student * std::sqrt(std::max(0.0, half_width * half_width - lattice * lattice));
   const double of_windows = std::sqrt(wanted * wanted - lattice * lattice);

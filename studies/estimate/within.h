@@ -26,8 +26,8 @@ namespace marti::studies::estimate {
 
 /// An estimate that is good enough.
 struct EstimatedRun {
-  SampledRun sampled;         ///< half-widths: the sample's own and what was measured
-  double use_to = 1.0;        ///< the class of load (measured_errors.h) that the latter are of
+  SampledRun sampled;         ///< half-widths: from the sample, plus the measured errors
+  double use_to = 1.0;        ///< the class of load (measured_errors.h) whose measured errors were added
   std::uint64_t windows = 0;  ///< drawn
   std::uint64_t of_windows = 0;
   std::uint64_t packets = 0;  ///< of the windows drawn

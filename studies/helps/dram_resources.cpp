@@ -12,7 +12,7 @@ using memory::DramPage;
 using memory::DramPolicy;
 using memory::DramTiming;
 
-// Eleven tenths become ten, or one less.
+// Divided by 1.1, and at least one less.
 std::int64_t less(std::int64_t now) { return std::max<std::int64_t>(std::min(now - 1, now * 10 / 11), 0); }
 
 }  // namespace

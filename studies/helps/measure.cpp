@@ -19,11 +19,10 @@ constexpr std::size_t most_in_pairs = 4;
 // So many replays are begun together, on any number of cores. Which steps come next depends on them.
 constexpr std::size_t begun_together = 4;
 
-// With a budget for fewer replays than this all are of steps, and which these are is chosen by what limits
-// the machine.
+// With a budget for fewer replays than this only steps are replayed, chosen by what limits the machine.
 constexpr Work few_replays = 3;
 
-// Else this part of the budget is kept for resources at their best.
+// With a larger budget, one part in so many is kept for resources at their best.
 constexpr Work part_for_best = 4;
 
 double saved_of(sim::Ticks before, sim::Ticks after) {

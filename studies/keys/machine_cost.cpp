@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "sim/decimal.h"
+
 namespace marti::studies::keys {
 
 namespace {
@@ -66,7 +68,9 @@ double cost_of(const Prices& prices, const MachineConfig& machine) {
   if (machine.l2.sharing == SecondLevel::shared) {
     cluster += prices.l2_kib * kib(machine.l2.cache.size);
   }
-  return cluster * static_cast<double>(machine.clusters);
+  // A machine whose decimal prices add up to a budget must not cost more than it for the rounding of sums.
+  constexpr int digits = 14;
+  return sim::with_digits(cluster * static_cast<double>(machine.clusters), digits);
 }
 
 }  // namespace marti::studies::keys

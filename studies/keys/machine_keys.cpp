@@ -324,7 +324,6 @@ void read_local(sim::Config& config, processors::machine::MachineConfig& machine
 
 void read_interconnect(sim::Config& config, processors::machine::MachineConfig& machine) {
   memory::InterconnectConfig& interconnect = machine.interconnect;
-  machine.banks.interleave = machine.reference_bytes();
   if (machine.placement == processors::machine::Placement::distributed) {
     const std::string_view reason =
         "a distributed database is in the nodes' own memories ([local]) and reached over [network]";
@@ -411,6 +410,7 @@ processors::machine::MachineConfig read_machine(sim::Config& config) {
   machine.build = read_build(config);
   read_local(config, machine);
   read_contexts(config, machine);
+  machine.banks.interleave = machine.reference_bytes();  // also of the one node that `space` is compared with
   if (machine.scheme != processors::machine::Scheme::space) {
     read_interconnect(config, machine);
   }

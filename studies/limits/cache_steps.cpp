@@ -30,7 +30,7 @@ CacheMisses misses_of(const MachineConfig& machine, double misses) {
 
 }  // namespace
 
-// Those of the nearest caches that differ in size and ways only.
+// The misses of the nearest caches that differ in size and ways only.
 std::vector<CacheMisses> StepPredictor::known_misses() const {
   std::vector<std::pair<double, CacheMisses>> found;
   const CacheMisses here = misses_of(machine(), figures().misses);
@@ -131,8 +131,7 @@ std::optional<StepPredictor::Guess> StepPredictor::smaller_packets(const helps::
   FrameWork work = model_->work_on(changed);
   const double more = part_at_borders * std::max(0.0, figures().misses - point.one_node->misses);
   work.reads *= 1.0 + more / figures().misses;
-  work.delays *= static_cast<double>(machine().packets.width * machine().packets.height) /
-                 static_cast<double>(changed.packets.width * changed.packets.height);
+  work.delays *= packet_area(machine()) / packet_area(changed);
   return Guess{model_->end_of(changed, work), LimitBasis::model,
                fmt::format("model: nodes are idle for {:.1f} % of their time",
                            100.0 * figures().idle / (figures().end * machine().all_nodes()))};

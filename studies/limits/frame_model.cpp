@@ -15,11 +15,11 @@ double scaled(double time, double before, double after) {
   return before > 0.0 ? time * after / before : time;
 }
 
-double area(const MachineConfig& machine) {
+}  // namespace
+
+double packet_area(const MachineConfig& machine) {
   return static_cast<double>(machine.packets.width) * static_cast<double>(machine.packets.height);
 }
-
-}  // namespace
 
 std::optional<FrameModel> FrameModel::of(const MachineConfig& machine, const PointFigures& figures) {
   const bool described = machine.scheme == processors::machine::Scheme::image &&
@@ -100,7 +100,7 @@ QueueModel FrameModel::queues_of(const MachineConfig& machine, const FrameWork& 
 }
 
 double FrameModel::end_of(const MachineConfig& changed, const FrameWork& work) const {
-  const double pieces = area(machine_) / area(changed);
+  const double pieces = packet_area(machine_) / packet_area(changed);
   const double before = customers_of(machine_, 1.0);
   const double after = customers_of(changed, pieces);
   const std::vector<double> rates =

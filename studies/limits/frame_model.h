@@ -19,6 +19,9 @@ struct FrameWork {
   double writes = 0.0;
 };
 
+/// The pixels of a packet.
+[[nodiscard]] double packet_area(const processors::machine::MachineConfig& machine);
+
 class FrameModel {
  public:
   /// The most nodes of a cluster.

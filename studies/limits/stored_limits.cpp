@@ -91,7 +91,11 @@ StoredLimits::StoredLimits(const sweep::SweepReader& sweep, const std::optional<
     }
     points.back().one_node = base->second;
   }
-  limits_.emplace(differing.keys(), std::move(points), prices);
+  try {
+    limits_.emplace(differing.keys(), std::move(points), prices);
+  } catch (const sim::UserError&) {  // a combination that another version of the program allowed
+    places_.clear();
+  }
 }
 
 std::optional<PointLimit> StoredLimits::at(std::int64_t ordinal) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string_view>
 
 #include "studies/tables/text_units.h"
@@ -33,10 +34,11 @@ std::string energy_lines(const run::RunResult& result) {
   const auto* const largest = std::max_element(counters.begin(), end, [&](const auto& a, const auto& b) {
     return energy.*a.member < energy.*b.member;
   });
+  const std::optional<double> power = result.figure("power");
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "\nenergy        {} a frame, {:.3g} W; its largest part is {} ({:.2f} %)\n",
-                 tables::joules(in_joules(energy.total)), result.figure("power").value_or(0.0), largest->name,
-                 share(energy.*largest->member, energy));
+  fmt::format_to(out, "\nenergy        {} a frame, {} W; its largest part is {} ({:.2f} %)\n",
+                 tables::joules(in_joules(energy.total)), power ? fmt::format("{:.3g}", *power) : "-",
+                 largest->name, share(energy.*largest->member, energy));
   for (const auto* part = counters.begin(); part != end; ++part) {
     if (energy.*part->member > 0) {
       fmt::format_to(out, "  {:<14}{:>12} {:>8.2f} %\n", part->name,

@@ -93,8 +93,7 @@ std::string flow_lines(const run::RunResult& r) {
   fmt::format_to(out, "  messages    {}, {:.1f} a ray, {} ({:.0f} B a ray)\n",
                  tables::grouped(r.count("network_messages")), figure(r, "messages_a_ray"),
                  bytes_of(r, "network_bytes"), figure(r, "message_bytes_a_ray"));
-  fmt::format_to(out, "  queues      mean wait {}\n",
-                 tables::seconds(static_cast<sim::Ticks>(figure(r, "mean_queue_wait"))));
+  fmt::format_to(out, "  queues      mean wait {}\n", tables::computed_seconds(figure(r, "mean_queue_wait")));
   for (const figures::StageLoad& stage : figures.stages) {
     load_line(out, stage);
   }
@@ -119,7 +118,7 @@ std::string flow_lines(const run::RunResult& r) {
   if (const std::optional<double> busy = r.figure("network_utilisation")) {
     fmt::format_to(out, ", links {} busy, {:.1f} hops a message, mean wait {}, longest {}",
                    tables::rough_percent(*busy), figure(r, "hops_a_message"),
-                   tables::seconds(static_cast<sim::Ticks>(figure(r, "mean_network_wait"))),
+                   tables::computed_seconds(figure(r, "mean_network_wait")),
                    tables::seconds(r.count("network_wait_max")));
   }
   text += "\n";

@@ -23,7 +23,8 @@ struct WrittenRun {
 /// Writes image.exr, image.png and result.json, and exact.exr and exact.png of a run with
 /// image.voxel_cut_reference, and what the run has recorded, under temporary names and renames them together
 /// at the end; then removes the files of an earlier run that this one lacks. Signals that end the program
-/// wait until that is done. Throws UserError with the reason; older results are unchanged then.
+/// wait until that is done. Throws UserError with the reason; older results are unchanged then, unless
+/// the system refuses to rename a file after it has renamed others.
 WrittenRun write_output(const run::RunResult& result, const std::filesystem::path& directory);
 
 }  // namespace marti::studies::show

@@ -95,15 +95,15 @@ std::string bound_lines(const run::RunResult& r) {
     return text;
   }
   const processors::replay::Prediction& p = *r.prediction;
-  const auto frame = [](double picoseconds) { return tables::seconds(static_cast<sim::Ticks>(picoseconds)); };
   text += fmt::format("predicted     {} by {}mean value analysis ({:+.1f} %), {} to {} by balanced jobs\n",
-                      frame(p.mean_value), p.exact ? "" : "approximate ",
-                      100.0 * (p.mean_value / ticks(r.timed.end) - 1.0), frame(p.balanced_low),
-                      frame(p.balanced_high));
+                      tables::computed_seconds(p.mean_value), p.exact ? "" : "approximate ",
+                      100.0 * (p.mean_value / ticks(r.timed.end) - 1.0),
+                      tables::computed_seconds(p.balanced_low), tables::computed_seconds(p.balanced_high));
   if (const std::optional<double> saturation = p.network.saturation()) {
-    text += fmt::format(
-        "  saturation  from {:.1f} nodes{}: {} between reads, {} a read in the busiest queue\n", *saturation,
-        r.machine.clusters > 1 ? " a cluster" : "", frame(p.network.think), frame(p.network.largest()));
+    text +=
+        fmt::format("  saturation  from {:.1f} nodes{}: {} between reads, {} a read in the busiest queue\n",
+                    *saturation, r.machine.clusters > 1 ? " a cluster" : "",
+                    tables::computed_seconds(p.network.think), tables::computed_seconds(p.network.largest()));
   }
   return text;
 }

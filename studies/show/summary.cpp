@@ -164,8 +164,7 @@ std::string waiting(const run::RunResult& r, const std::string& queue,
   if (!mean) {
     return "no transactions";
   }
-  return fmt::format("mean wait {}, 95 % below {}, longest {}",
-                     tables::seconds(static_cast<sim::Ticks>(*mean)),
+  return fmt::format("mean wait {}, 95 % below {}, longest {}", tables::computed_seconds(*mean),
                      tables::seconds(waits->histogram.percentile(95.0).value_or(0)),
                      tables::seconds(r.count(queue + "_wait_max")));
 }

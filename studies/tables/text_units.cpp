@@ -32,6 +32,10 @@ std::string seconds(sim::Ticks ticks) {
   return fmt::format("{:.3f} us", s * 1e6);
 }
 
+std::string computed_seconds(double ps) {
+  return seconds(static_cast<sim::Ticks>(std::llround(std::clamp(ps, 0.0, 0x1p62))));
+}
+
 std::string signed_seconds(sim::Ticks ticks) {
   if (ticks == 0) {
     return seconds(ticks);

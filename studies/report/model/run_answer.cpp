@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/error.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
 
@@ -47,9 +49,11 @@ std::string bound_sentence(const tables::RunJson& run) {
     return {};
   }
   return fmt::format(
-      "This machine cannot do this work in less than {} ({}): better waiting and balance could gain {:.1f} % "
-      "at most.",
-      time_text(*least), words(run.text("machine.bounds.by")), 100.0 * std::max(0.0, 1.0 - *least / end));
+      "With the work shared out as it is, this machine needs at least {} ({}): less waiting could gain "
+      "{:.1f} % at "
+      "most.",
+      tables::computed_seconds(*least), words(run.text("machine.bounds.by")),
+      100.0 * std::max(0.0, 1.0 - *least / end));
 }
 
 std::string saturation_sentence(const tables::RunJson& run) {
@@ -77,10 +81,14 @@ std::string machine_text(const tables::RunJson& run) {
 }
 
 std::vector<std::string> answer_of(const tables::RunJson& run, const std::string& base) {
+  if (run.optional_number("figures.machine.end", 0.0, longest) == 0.0) {
+    throw sim::UserError(run.file() +
+                         ": the frame takes no time on this machine, so there is nothing to report");
+  }
   std::vector<std::string> answer;
-  std::string first =
-      fmt::format("A frame takes {} on {}",
-                  time_text(run.required_number("figures.machine.end", 1.0, longest)), machine_text(run));
+  std::string first = fmt::format(
+      "A frame takes {} on {}",
+      tables::computed_seconds(run.required_number("figures.machine.end", 1.0, longest)), machine_text(run));
   if (const std::optional<double> speed_up =
           run.optional_number("figures.machine.speed_up", 0.0, most_figure)) {
     first += fmt::format(": {:.2f} times as fast as {}, an efficiency of {:.1f} %", *speed_up, base,

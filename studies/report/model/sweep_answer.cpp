@@ -9,6 +9,7 @@
 
 #include "studies/figures/best_offer.h"
 #include "studies/report/model/answer_text.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
 
@@ -174,8 +175,8 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
     }
   };
   answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", compared,
-                               time_text(fastest.figure("end")), speed_text(fastest), unit, price_of(fastest),
-                               place_text(sweep, fastest)));
+                               tables::computed_seconds(fastest.figure("end")), speed_text(fastest), unit,
+                               price_of(fastest), place_text(sweep, fastest)));
   if (sweep.frames > 1) {
     answer.push_back(fmt::format(
         "The sweep has {} different frames, which are not the same work: only the machines of the frame with "
@@ -190,15 +191,15 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         fmt::format("Worth its price (the knee of the {} machines that no other beats in price and time): {} "
                     "a frame{} {} {:g}, "
                     "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
-                    chosen.front.size(), time_text(knee.figure("end")), speed_text(knee), unit,
+                    chosen.front.size(), tables::computed_seconds(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
     add_limit("What would help that one, predicted", knee);
   }
   if (chosen.within) {
     const ReportPoint& within = sweep.points[*chosen.within];
     answer.push_back(fmt::format("The fastest within a budget of {:g}: {} a frame{} {} {:g}: {}.",
-                                 *chosen.budget, time_text(within.figure("end")), speed_text(within), unit,
-                                 price_of(within), place_text(sweep, within)));
+                                 *chosen.budget, tables::computed_seconds(within.figure("end")),
+                                 speed_text(within), unit, price_of(within), place_text(sweep, within)));
   } else if (chosen.budget) {
     answer.push_back(fmt::format("No machine is within a budget of {:g}; the cheapest is {} {:g}.",
                                  *chosen.budget, unit, price_of(sweep.points[chosen.front.front()])));

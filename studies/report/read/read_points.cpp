@@ -111,6 +111,12 @@ void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std:
   if (std::holds_alternative<std::monostate>(cell) && !needed) {
     return;  // the machine has no such part
   }
+  if (name == "end" && cell == tables::Cell(std::int64_t{0})) {
+    throw sim::UserError(
+        fmt::format("{}: point {}: the frame takes no time on this machine, so there is nothing to report; "
+                    "leave the point out",
+                    store.string(), ordinal));
+  }
   const double least = name == "end" || name == "nodes" ? 1.0 : 0.0;
   const std::optional<double> number = tables::number_of(cell);
   const bool whole = name != "end" || std::holds_alternative<std::int64_t>(cell);

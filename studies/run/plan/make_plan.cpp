@@ -234,9 +234,10 @@ bool is_left_out(const Plan& plan, PlanItem item) {
 
 processors::program::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts) {
   processors::program::RenderOptions options = facts.render;
-  // No material continues a chain of rays, so each chain is a single ray.
+  // No material continues a chain of rays, so each chain is a single ray. The voxel cut, however, finds with
+  // the depth from which level on voxels are small.
   if (is_left_out(plan, PlanItem::reflection_rays) && is_left_out(plan, PlanItem::refraction_rays) &&
-      !facts.needs.diffuse_rays) {
+      !facts.needs.diffuse_rays && facts.render.voxel_cut == 0.0) {
     options.max_depth = 1;
   }
   // Without shadows there are no shadow rays to keep.

@@ -79,7 +79,6 @@ class KeptItems {
   static KeptItems all();
 
   [[nodiscard]] bool has(PlanItem item) const { return bits_[static_cast<std::size_t>(item)]; }
-  [[nodiscard]] bool any() const { return bits_.any(); }
   void keep(PlanItem item) { bits_.set(static_cast<std::size_t>(item)); }
 
  private:

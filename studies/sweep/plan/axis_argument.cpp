@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "sim/decimal.h"
 #include "sim/error.h"
 #include "sim/key_value.h"
 #include "sim/nearest.h"
@@ -140,7 +141,7 @@ class ArgumentReader {
       if (!factor || !(*factor > 1.0) || !std::isfinite(*factor) || !(from > Number(0))) {
         fail("a range by factors begins above 0, and its factor is a number above 1");
       }
-      add_steps<Number>(to, [&](std::int64_t i) {
+      add_steps<Number>(from, to, [&](std::int64_t i) {
         return static_cast<long double>(from) *
                std::pow(static_cast<long double>(*factor), static_cast<long double>(i));
       });
@@ -149,17 +150,17 @@ class ArgumentReader {
       if (!(addend > Number(0))) {
         fail("the step of a range must be above 0");
       }
-      add_steps<Number>(to, [&](std::int64_t i) {
+      add_steps<Number>(from, to, [&](std::int64_t i) {
         return static_cast<long double>(from) +
                static_cast<long double>(addend) * static_cast<long double>(i);
       });
     }
   }
 
-  // Adds step(0), step(1), ... as long as they are not above `to`. Of reals, a value that only rounding keeps
-  // from being `to` is `to`.
+  // Adds step(0), which is `from`, step(1), ... as long as they are not above `to`. Of reals, a value that
+  // only rounding keeps from being `to` is `to`.
   template <class Number, class Step>
-  void add_steps(Number to, const Step& step) {
+  void add_steps(Number from, Number to, const Step& step) {
     const auto end = static_cast<long double>(to);
     for (std::int64_t i = 0;; ++i) {
       const long double value = step(i);
@@ -177,7 +178,10 @@ class ArgumentReader {
         if (value > end && !there) {
           return;
         }
-        add(sim::Value(there ? to : static_cast<Number>(value)));
+        // 0.1..0.7+0.1 has 0.3, not 0.30000000000000004.
+        constexpr int digits = 15;
+        const Number rounded = i > 0 ? sim::with_digits(static_cast<Number>(value), digits) : from;
+        add(sim::Value(there ? to : rounded));
       }
     }
   }

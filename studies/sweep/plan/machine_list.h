@@ -20,7 +20,7 @@ class MachineList {
   /// The machine's number, in the order of entering; equal machines have one. Takes the settings out of
   /// `read`. Opens a scene that is a file when its frame is new. Throws UserError when it cannot be used.
   std::size_t enter(ReadPoint& read);
-  /// Says that a point asks for the machine, which is then not only one to measure others against.
+  /// Says that a point asks for the machine, which otherwise only serves as a base or a comparison.
   void used_by_point(std::size_t machine, std::size_t point);
   /// Moves everything into the plan, whose points and comparison have the numbers of enter(). Machines are
   /// ordered by frame, those of the points in the points' order, then the others.

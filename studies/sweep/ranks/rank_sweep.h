@@ -41,8 +41,8 @@ class RankServer {
 
   void tell(std::size_t rank, const SweepMessage& message);
   [[nodiscard]] bool all_leave() const;
-  /// Forgets logs, takes the messages that have come, and hands out tasks; returns whether there were any of
-  /// these.
+  /// Forgets logs, takes the messages that have come, and hands out tasks; returns whether it did any of
+  /// that.
   bool step(const SweepSite& site, Coordinator& coordinator);
   bool forget_logs();
   bool hand_out(Coordinator& coordinator);

@@ -12,9 +12,9 @@ struct StoreColumn {
   std::string name;
   std::string unit;
   std::string description;
-  std::string merge{};    ///< of a figure (studies/figures/figure_entry.h): how those of its parts make it,
-  std::string better{};   ///< whether lower or higher is better,
-  std::string formula{};  ///< and of a derived one its formula
+  std::string merge{};    ///< of a figure (studies/figures/figure_entry.h): how its parts' values combine
+  std::string better{};   ///< of a figure: whether lower or higher is better
+  std::string formula{};  ///< of a derived figure
 };
 
 /// Every column of every table and view that is not of the host.

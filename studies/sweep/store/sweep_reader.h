@@ -33,8 +33,8 @@ struct StoredPoint {
 
 class SweepReader {
  public:
-  /// Throws UserError when the file is missing, is not a store, or is one of another format. A store of
-  /// another version of the program can be read: counters that it lacks have no value.
+  /// Throws UserError when the file is missing, is not a store, or is of a format that this program does not
+  /// read. A store of another version of the program can be read: counters that it lacks have no value.
   explicit SweepReader(const std::filesystem::path& file);
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }

@@ -44,8 +44,8 @@ class Progress {
   std::size_t machines_done_ = 0;
   std::size_t frames_ = 0;
   std::size_t frames_done_ = 0;
-  std::optional<double> seconds_left_;  // when the last frame or machine was done
-  Clock::time_point told_;              // that time
+  std::optional<double> seconds_left_;  // estimated when the last frame or machine was done
+  Clock::time_point told_;              // when seconds_left_ was estimated
   Clock::time_point printed_;           // of the last line where there is no terminal
   std::optional<progress::ProgressLine> line_;
 };

@@ -97,6 +97,12 @@ TEST(AxisArgument, RefusesWithTheArgumentAndTheReason) {
   }
 }
 
+TEST(AxisArgument, StepsOfRealsAreDecimals) {
+  EXPECT_EQ(values_of("energy.voltage=0.1..0.7+0.1"),
+            (Values{"0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7"}));
+  EXPECT_EQ(values_of("energy.voltage=0.1..0.15*1.1"), (Values{"0.1", "0.11", "0.121", "0.1331", "0.14641"}));
+}
+
 TEST(AxisArgument, ReplacesAnAxisOfTheFile) {
   const std::string file = "[sweep.axes]\nmachine.nodes = [1, 2]\ncache.ways = [1, 2]\n";
   const std::vector<std::string> axes = {"machine.nodes=4,8,16"};

@@ -87,6 +87,18 @@ RC_GTEST_PROP(Pareto, HoldsTheBestForEveryBudget, ()) {
   }
 }
 
+// In binary numbers 3 * (3.3 + 16 * 0.1) + 8.8 is more than 23.5.
+TEST(Cost, FitsABudgetOfTheDecimalPrices) {
+  const Prices prices{8.8, 3.3, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
+  for (std::uint32_t nodes = 1; nodes <= 1000; ++nodes) {
+    processors::machine::MachineConfig machine;
+    machine.nodes = nodes;
+    machine.cache.cache.size = 16384;
+    const std::int64_t tenths = 88 + 49 * std::int64_t{nodes};
+    EXPECT_EQ(cost_of(prices, machine), static_cast<double>(tenths) / 10.0) << nodes;
+  }
+}
+
 TEST(Cost, IsThatOfEachPart) {
   const Prices prices{1000.0, 100.0, 10.0, 3.0, 0.5, 7.0, 20.0, 11.0};
   processors::machine::MachineConfig machine;

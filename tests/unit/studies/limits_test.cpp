@@ -146,6 +146,24 @@ TEST(SweepLimits, OneNodeOnAnIdealInterconnectIsLimitedByItsClock) {
   EXPECT_TRUE(limit.open().empty()) << limit.sentence();
 }
 
+// A packet larger than the image is the whole frame, however large it is: even where its pixels do not fit 32
+// bits.
+TEST(SweepLimits, LargePacketsAreCutAlike) {
+  const auto packets_step = [](const std::string& side) {
+    const test::TimedSweep sweep = sweep_of(
+        "[sweep.axes]\nmachine.nodes = [1, 4]\n"
+        "packets.width = [" +
+        side + "]\npackets.height = [" + side + "]\n");
+    const PointLimit limit = sweep.limits().at(1);
+    const PredictedStep* const step = find(limit, "packets.width");
+    EXPECT_NE(step, nullptr) << limit.sentence();
+    return step != nullptr ? step->saved : -1.0;
+  };
+  const double saved = packets_step("32768");
+  EXPECT_GT(saved, 0.0);
+  EXPECT_DOUBLE_EQ(packets_step("65536"), saved);
+}
+
 // Without caches 64 nodes keep a slow bus busy all the time: its clock shortens the frame by as much.
 TEST(SweepLimits, AFullBusIsTheLimit) {
   const test::TimedSweep sweep = sweep_of(

@@ -11,6 +11,7 @@
 
 #include "processors/program/shading.h"
 #include "scenes/procedural.h"
+#include "scenes/spd.h"
 #include "studies/host/image_file.h"
 #include "studies/run/plan/make_plan.h"
 #include "studies/verify/verify_plan.h"
@@ -250,6 +251,21 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
   const FunctionalRun kept = run_functional(frame);
   EXPECT_EQ(kept.image_hash, run.image_hash);
   EXPECT_EQ(difference_of(*run.frame.log, *kept.frame.log), "");
+}
+
+// The depth of rays decides from which level on voxels are small, also where no ray is sent on.
+TEST(PlanProof, OfVoxelCuts) {
+  const scenes::Scene scene = scenes::spd::make_tetra(5);
+  FrameConfig frame = testing::small_frame("octree", 48);
+  frame.render.max_depth = 4;
+  frame.render.voxel_cut = 4.0;
+  const FunctionalRun planned = run_keeping(frame, {}, scene);
+  EXPECT_TRUE(is_left_out(planned.plan, PlanItem::reflection_rays));
+  const FunctionalRun kept = run_keeping(frame, KeptItems::all(), scene);
+  EXPECT_EQ(difference_of(*planned.frame.log, *kept.frame.log), "");
+  frame.render.max_depth = 1;
+  EXPECT_NE(difference_of(*planned.frame.log, *run_keeping(frame, {}, scene).frame.log), "")
+      << "depth matters here";
 }
 
 // The proof can fail: it notices one changed word, texel or pixel.

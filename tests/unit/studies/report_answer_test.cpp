@@ -119,12 +119,6 @@ TEST(Choose, DrawsTheLineOfTheKneeFromFreeMachinesToo) {
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }
 
-TEST(TimeText, KeepsWithin64Bits) {
-  EXPECT_EQ(time_text(1e6), "1.000 us");
-  EXPECT_EQ(time_text(-1.0), "0 s");
-  EXPECT_EQ(time_text(1e308), time_text(0x1p62));
-}
-
 const char* const whole_run =
     R"({"figures": {"machine": {"end": 2000000, "speed_up": 3, "efficiency": 0.75, "lost_contention": 1.0,
   "lost_extra_misses": 0, "lost_imbalance": 0, "lost_overhead": 0, "lost_idle": 0,
@@ -137,10 +131,18 @@ TEST(AnswerOfRun, BoundsThisMachineOnly) {
   ASSERT_EQ(answer.size(), 4U);
   EXPECT_EQ(answer[0],
             "A frame takes 2.000 us on 4 nodes: 3.00 times as fast as one node, an efficiency of 75.0 %.");
-  EXPECT_EQ(answer[2],
-            "This machine cannot do this work in less than 1.000 us (computing): better waiting and balance "
-            "could gain 50.0 % at most.");
+  EXPECT_EQ(
+      answer[2],
+      "With the work shared out as it is, this machine needs at least 1.000 us (computing): less waiting "
+      "could gain 50.0 % at most.");
   EXPECT_NE(answer[3].find("-12.5 % off"), std::string::npos);
+}
+
+TEST(AnswerOfRun, SaysThatAFrameTakesNoTime) {
+  Json run = Json::parse(whole_run);
+  run["figures"]["machine"]["end"] = 0;
+  EXPECT_EQ(user_error_of([&] { (void)answer_of(RunJson(run, "f"), "one node"); }),
+            "f: the frame takes no time on this machine, so there is nothing to report");
 }
 
 TEST(AnswerOfRun, NamesTheFieldThatIsWrong) {

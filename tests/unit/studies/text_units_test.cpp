@@ -26,6 +26,13 @@ TEST(TextUnits, TimesHaveThreeDecimalsInTheLargestUnit) {
   EXPECT_EQ(signed_seconds(28'202'000'000), "+28.202 ms");
 }
 
+TEST(TextUnits, ComputedTimesKeepWithin64Bits) {
+  EXPECT_EQ(computed_seconds(1e6), "1.000 us");
+  EXPECT_EQ(computed_seconds(1.5), "2 ps");
+  EXPECT_EQ(computed_seconds(-1.0), "0 s");
+  EXPECT_EQ(computed_seconds(1e308), computed_seconds(0x1p62));
+}
+
 TEST(TextUnits, SharesAndChangesArePercentages) {
   EXPECT_EQ(percent(0.249), "24.90 %");
   EXPECT_EQ(rough_percent(0.0993), "9.9 %");
