@@ -1,6 +1,6 @@
 # cmake -DROOT=... -DFOLDERS=... -DVERSION=... -DOUTPUT=... -P program_build.cmake: writes the source with the hash of
-# the sources in these folders of ROOT. Paths are hashed too; the output changes only when a path or the content of a file
-# does.
+# the sources in these folders of ROOT. Paths are hashed too; the output changes only when a path or the content of a
+# file does.
 cmake_minimum_required(VERSION 3.25)
 
 set(files "")

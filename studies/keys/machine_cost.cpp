@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "sim/decimal.h"
+#include "sim/rounded.h"
 
 namespace marti::studies::keys {
 
@@ -70,7 +70,7 @@ double cost_of(const Prices& prices, const MachineConfig& machine) {
   }
   // A machine whose decimal prices add up to a budget must not cost more than it for the rounding of sums.
   constexpr int digits = 14;
-  return sim::with_digits(cluster * static_cast<double>(machine.clusters), digits);
+  return sim::rounded(cluster * static_cast<double>(machine.clusters), digits);
 }
 
 }  // namespace marti::studies::keys

@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "memory/record_kind.h"
+#include "sim/rounded.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/model/cycle_groups.h"
-#include "studies/report/model/rounded.h"
+#include "studies/report/model/digits.h"
 
 namespace marti::studies::report {
 
@@ -48,16 +49,16 @@ Json model_json(const AxisModel& model) {
     bool one_base = true;
     double first_base = -1.0;
     for (const std::optional<Modelled>& sample : curve.samples) {
-      ms.push_back(sample ? Json(rounded(sample->end * ms_a_ps, curve_digits)) : Json());
-      base.push_back(sample ? Json(rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
-      bound.push_back(sample ? Json(rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
+      ms.push_back(sample ? Json(sim::rounded(sample->end * ms_a_ps, curve_digits)) : Json());
+      base.push_back(sample ? Json(sim::rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
+      bound.push_back(sample ? Json(sim::rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
       if (sample) {
         first_base = first_base < 0.0 ? sample->base_end : first_base;
         one_base = one_base && std::abs(sample->base_end - first_base) <= 1e-9 * first_base;
       }
     }
     Json each = {{"ms", ms}, {"bound", bound}};
-    each["base"] = one_base ? Json(rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
+    each["base"] = one_base ? Json(sim::rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
     if (curve.saturation) {
       each["saturation"] = *curve.saturation;
     }
@@ -156,7 +157,7 @@ Json column_of(const ExplorerField& field, const ReportPoints& sweep) {
   for (const ReportPoint& point : sweep.points) {
     const double value = point.figure(field.name) / field.divisor;
     column.push_back(!point.has(field.name) ? Json()
-                                            : Json(field.exact ? value : rounded(value, figure_digits)));
+                                            : Json(field.exact ? value : sim::rounded(value, figure_digits)));
   }
   return column;
 }

@@ -6,7 +6,8 @@
 
 #include "processors/theory/closed_network.h"
 #include "sim/error.h"
-#include "studies/report/model/rounded.h"
+#include "sim/rounded.h"
+#include "studies/report/model/digits.h"
 
 namespace marti::studies::report {
 
@@ -186,8 +187,8 @@ ModelError LeaveOneOut::summary(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
   const double mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(errors.size())));
-  error.mean = rounded(std::expm1(mean), curve_digits);
-  error.p95 = rounded(std::expm1(errors[rank - 1]), curve_digits);
+  error.mean = sim::rounded(std::expm1(mean), curve_digits);
+  error.p95 = sim::rounded(std::expm1(errors[rank - 1]), curve_digits);
   return error;
 }
 

@@ -50,8 +50,7 @@ std::string bound_sentence(const tables::RunJson& run) {
   }
   return fmt::format(
       "With the work shared out as it is, this machine needs at least {} ({}): less waiting could gain "
-      "{:.1f} % at "
-      "most.",
+      "{:.1f} % at most.",
       tables::computed_seconds(*least), words(run.text("machine.bounds.by")),
       100.0 * std::max(0.0, 1.0 - *least / end));
 }

@@ -8,8 +8,9 @@
 #include <numeric>
 
 #include "processors/cost/accounting.h"
+#include "sim/rounded.h"
 #include "sim/schema.h"
-#include "studies/report/model/rounded.h"
+#include "studies/report/model/digits.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
 namespace marti::studies::report {
@@ -42,7 +43,7 @@ std::vector<double> samples_of(const ReportAxis& axis, const sim::Schema& schema
   const auto place = [&](double from, double to, double share) {
     const double x = axis.logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share))
                                       : std::lerp(from, to, share);
-    return axis.integer ? std::round(x) : rounded(x, place_digits);
+    return axis.integer ? std::round(x) : sim::rounded(x, place_digits);
   };
   const auto [lowest, highest] = range_of(axis, schema);
   std::vector<double> x = values;
@@ -87,16 +88,16 @@ ModelCurve curve_of(const LineModel& line, const ReportAxis& axis, const AxisMod
       continue;
     }
     sample = line.at(x);
-    sample->end = rounded(sample->end, curve_digits);
-    sample->base_end = rounded(sample->base_end, place_digits);
-    sample->asymptote = rounded(sample->asymptote, curve_digits);
+    sample->end = sim::rounded(sample->end, curve_digits);
+    sample->base_end = sim::rounded(sample->base_end, place_digits);
+    sample->asymptote = sim::rounded(sample->asymptote, curve_digits);
     if (!std::isfinite(sample->end)) {
       sample.reset();
     }
   }
   if (axis.name == "machine.nodes") {
     if (const std::optional<double> nodes = saturation_nodes(line.points().back())) {
-      curve.saturation = rounded(*nodes, curve_digits);
+      curve.saturation = sim::rounded(*nodes, curve_digits);
     }
   }
   return curve;

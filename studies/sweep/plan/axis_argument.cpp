@@ -9,10 +9,10 @@
 #include <unordered_set>
 #include <utility>
 
-#include "sim/decimal.h"
 #include "sim/error.h"
 #include "sim/key_value.h"
 #include "sim/nearest.h"
+#include "sim/rounded.h"
 #include "sim/shown.h"
 #include "sim/trim.h"
 #include "studies/sweep/plan/sweep_table.h"
@@ -180,8 +180,8 @@ class ArgumentReader {
         }
         // 0.1..0.7+0.1 has 0.3, not 0.30000000000000004.
         constexpr int digits = 15;
-        const Number rounded = i > 0 ? sim::with_digits(static_cast<Number>(value), digits) : from;
-        add(sim::Value(there ? to : rounded));
+        const Number decimal = i > 0 ? sim::rounded(static_cast<Number>(value), digits) : from;
+        add(sim::Value(there ? to : decimal));
       }
     }
   }
