@@ -5,8 +5,8 @@
 // lines of its set have been used since the line's last use (Mattson et al. 1970, see stack_distance.h; Hill
 // and Smith, "Evaluating associativity in CPU caches", IEEE Trans. Computers 38(12), 1989, all-associativity
 // simulation). When a number of sets divides a larger one, lines that share a set of the larger number share
-// one of the smaller. So a line that is the newest of its set with the smaller number is so with the larger
-// one too, and a use of it moves nothing there (set refinement, ibid.).
+// one of the smaller. So a line that was used last in its set of the smaller number was used last in its
+// set of the larger one too, where a further use of it changes nothing (set refinement, ibid.).
 #pragma once
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <string>
 
 #include "sim/error.h"
 #include "sim/key_error.h"
+#include "sim/parse_number.h"
 #include "sim/shown.h"
 
 namespace marti::memory {
@@ -88,9 +88,8 @@ DramFieldBits parse_dram_field(std::string_view text) {
     run.field = static_cast<DramField>(found - dram_field_names.begin());
   }
   if (valid && colon != std::string_view::npos) {
-    const std::string_view number = text.substr(colon + 1);
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), run.bits);
-    valid = error == std::errc() && end == number.data() + number.size() && run.bits >= 1 && run.bits <= 32;
+    run.bits = sim::parse_number<decltype(run.bits)>(text.substr(colon + 1)).value_or(0);
+    valid = run.bits >= 1 && run.bits <= 32;
   }
   if (!valid) {
     throw sim::UserError(sim::shown(text) +

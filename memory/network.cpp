@@ -89,9 +89,9 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
   }
 
   Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) {
-    // Times are kept less the latency of the hops before: then a link begins when it is free, but not before
-    // the link before it, and the latest beginning is all that one link leaves to the next. No time is later
-    // than the arrival, where it is checked that it fits.
+    // Each link's time is written as if all links began at once, that is, less the latency of the hops before
+    // it. Then the message begins at the latest of `now` and the times at which its links become free. No
+    // time is later than the arrival, for which it is checked that it fits.
     const auto hop = static_cast<std::uint64_t>(hop_);
     const Ticks held = holds_hop ? add_ticks(hop_, data) : data;
     std::uint64_t latency = 0;

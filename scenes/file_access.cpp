@@ -8,6 +8,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/input_files.h"
 
 namespace marti::scenes {
 
@@ -81,6 +82,7 @@ bool FileAccess::read(const std::string& name, std::string& bytes, std::string& 
       }
     }
     bytes = sim::read_file(file, static_cast<std::int64_t>(max_bytes_));
+    sim::note_input(file);
     return true;
   } catch (const std::exception& reason) {
     error += reason.what();

@@ -1,13 +1,13 @@
 #include "scenes/gltf_nodes.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "sim/nearest.h"
+#include "sim/parse_number.h"
 #include "sim/shown.h"
 
 namespace marti::scenes::gltf {
@@ -197,15 +197,13 @@ int chosen_index(const Model& model, const std::string& choice, const char* kind
       return static_cast<int>(i);
     }
   }
-  int index = -1;
-  const char* end = choice.data() + choice.size();
-  const auto [stop, error] = std::from_chars(choice.data(), end, index);
-  if (error != std::errc{} || stop != end || index < 0 || static_cast<std::size_t>(index) >= names.size()) {
+  const std::optional<int> index = sim::parse_number<int>(choice);
+  if (!index || *index < 0 || static_cast<std::size_t>(*index) >= names.size()) {
     model.fail_choice(kind, "it has no " + std::string(kind) + " '" + sim::shown(choice) + "'" +
                                 sim::did_you_mean(choice, names) + "; there are " +
                                 std::to_string(names.size()) + ", to be chosen by name or by number from 0");
   }
-  return index;
+  return *index;
 }
 
 }  // namespace marti::scenes::gltf

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <sstream>
 #include <utility>
 
 #include "scenes/text_lines.h"
+#include "sim/parse_number.h"
 
 namespace marti::scenes {
 
@@ -43,11 +43,7 @@ constexpr std::array<MapOption, 12> map_options = {{{"-blendu", 1, 1},
                                                     {"-t", 1, 3},
                                                     {"-texres", 1, 1}}};
 
-bool is_number(std::string_view word) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc{} && end == word.data() + word.size();
-}
+bool is_number(std::string_view word) { return sim::parse_number<double>(word).has_value(); }
 
 class MtlReader {
  public:

@@ -1,14 +1,13 @@
 #include "scenes/procedural.h"
 
 #include <array>
-#include <charconv>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "scenes/spd.h"
 #include "sim/error.h"
 #include "sim/nearest.h"
+#include "sim/parse_number.h"
 #include "sim/shown.h"
 
 namespace marti::scenes {
@@ -136,15 +135,13 @@ const ProceduralScene& find_scene(std::string_view name, const std::string& wher
 }
 
 std::uint32_t parse_size(std::string_view text, const ProceduralScene& scene, const std::string& where) {
-  std::uint32_t size = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
-  const bool is_number = error != std::errc::invalid_argument && end == text.data() + text.size();
-  if (!is_number || error != std::errc{} || size < scene.minimum_size || size > scene.maximum_size) {
+  const auto size = sim::parse_number<std::uint32_t>(text);
+  if (!size || *size < scene.minimum_size || *size > scene.maximum_size) {
     throw sim::UserError(where + "the size of " + std::string(scene.name) + " must be a whole number from " +
                          std::to_string(scene.minimum_size) + " to " + std::to_string(scene.maximum_size) +
                          ", as in " + std::string(scene.name) + ":" + std::to_string(scene.default_size));
   }
-  return size;
+  return *size;
 }
 
 }  // namespace

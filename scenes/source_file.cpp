@@ -6,6 +6,7 @@
 #include "scenes/part_error.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/input_files.h"
 #include "sim/key_error.h"
 #include "sim/shown.h"
 
@@ -21,7 +22,9 @@ std::string SourceFile::read(std::uint64_t copies) const {
     take_memory(copies * size, "it takes");
   }
   try {
-    return sim::read_file(path_, static_cast<std::int64_t>(options_.max_file_bytes));
+    std::string bytes = sim::read_file(path_, static_cast<std::int64_t>(options_.max_file_bytes));
+    sim::note_input(path_);
+    return bytes;
   } catch (const sim::UserError& error) {
     const std::string reason = error.what();
     if (reason.starts_with(path_.string())) {

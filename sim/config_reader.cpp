@@ -16,6 +16,7 @@
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/input_files.h"
 #include "sim/key_value.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
@@ -409,7 +410,9 @@ Config Config::from_text(const Schema& schema, std::string_view text, std::strin
 
 Config Config::from_file(const Schema& schema, const std::filesystem::path& file,
                          std::span<const std::string> assignments) {
-  return from_text(schema, read_file(file, longest_config), file.string(), assignments);
+  const std::string text = read_file(file, longest_config);
+  note_input(file);
+  return from_text(schema, text, file.string(), assignments);
 }
 
 }  // namespace marti::sim

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <limits>
 
 #include "sim/key_error.h"
+#include "sim/parse_number.h"
 #include "sim/units.h"
 
 namespace marti::sim {
@@ -35,9 +35,7 @@ std::string limit_text(std::uint64_t bytes, bool exact) {
 std::uint64_t number_in(const std::filesystem::path& file) {
   std::string text;
   std::ifstream(file) >> text;
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && end == text.data() + text.size() ? number : most_bytes;
+  return parse_number<std::uint64_t>(text).value_or(most_bytes);
 }
 
 // The least limit of a control group and its ancestors.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdint>
 #include <mutex>
 #include <set>
@@ -60,16 +61,21 @@ std::string random_name() {
   return name;
 }
 
+// What a temporary name begins with: as much of the target's name as leaves room for what is added to it.
+std::string beginning(const fs::path& target) {
+  const std::size_t added = 1 + unlocked_mark.size() + random_digits + target.extension().string().size();
+  return "." + target.stem().string().substr(0, NAME_MAX - std::min<std::size_t>(added, NAME_MAX));
+}
+
 fs::path temporary_name(const fs::path& target, bool locked) {
-  fs::path name = ".";
-  name += target.stem();
+  fs::path name = beginning(target);
   name += std::string(locked ? locked_mark : unlocked_mark) + random_name();
   name += target.extension();
   return target.parent_path() / name;
 }
 
 bool is_locked_name_of(const fs::path& target, const std::string& name) {
-  const std::string begin = "." + target.stem().string() + std::string(locked_mark);
+  const std::string begin = beginning(target) + std::string(locked_mark);
   const std::string end = target.extension().string();
   return name.size() == begin.size() + random_digits + end.size() && name.starts_with(begin) &&
          name.ends_with(end) &&

@@ -29,6 +29,15 @@ std::string_view name_of(ValueType type);
 /// percentage (fraction): double; text, choice: string.
 using Value = std::variant<bool, std::int64_t, double, std::string>;
 
+/// The value as a real, in the units of Value; std::nullopt for booleans and texts.
+[[nodiscard]] inline std::optional<double> number_of(const Value& value) {
+  if (const auto* const whole = std::get_if<std::int64_t>(&value)) {
+    return static_cast<double>(*whole);
+  }
+  const auto* const real = std::get_if<double>(&value);
+  return real != nullptr ? std::optional(*real) : std::nullopt;
+}
+
 /// The value as written in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
 std::string print_value(ValueType type, const Value& value);
 

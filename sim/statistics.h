@@ -103,21 +103,6 @@ void merge(S& into, const S& from) {
   }
 }
 
-/// The counts between two snapshots, so that a warm-up can be removed. A maximum cannot be subtracted: the
-/// result has that of `later`.
-template <HasCounters S>
-S difference(const S& later, const S& earlier) {
-  constexpr auto table = S::counters();
-  S result = later;
-  for (const auto& counter : table) {
-    if (counter.rule == MergeRule::sum) {
-      std::int64_t& value = result.*counter.member;
-      ensure(!__builtin_sub_overflow(value, earlier.*counter.member, &value), "a counter overflowed");
-    }
-  }
-  return result;
-}
-
 /// Count, sum, sum of squares and extremes of int64 samples, all exact: 128 bits hold the sum and 192 the
 /// sum of squares of any 2^63 samples. Mean and variance are rounded once, at the end; running means in
 /// floating point freeze or lose all digits at large offsets.

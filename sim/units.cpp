@@ -9,6 +9,7 @@
 #include <span>
 #include <system_error>
 
+#include "sim/parse_number.h"
 #include "sim/shown.h"
 
 namespace marti::sim {
@@ -34,7 +35,8 @@ constexpr std::string_view duration_hint =
     "a duration is a number with a unit, such as \"10 ns\" (ps, ns, us, ms, s)";
 constexpr std::string_view frequency_hint =
     "a frequency is a number with a unit, such as \"33 MHz\" (Hz, kHz, MHz, GHz, THz)";
-constexpr std::string_view percentage_hint = "a percentage is a number with its sign, such as \"42 %\"";
+constexpr std::string_view percentage_hint =
+    "a percentage is a number from 0 on with its sign, such as \"42 %\"";
 
 [[noreturn]] void fail(std::string_view text, std::string_view reason) {
   throw UserError("\"" + shown(text) + "\": " + std::string(reason));
@@ -163,12 +165,11 @@ std::string decimal(double value) {
 double nearest_real(std::string_view text, const Quantity& quantity, int exponent) {
   const std::string written =
       std::string(quantity.whole) + "." + std::string(quantity.fraction) + "0e" + std::to_string(exponent);
-  double value = 0;
-  const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), value);
-  if (error != std::errc{} || end != written.data() + written.size() || !std::isfinite(value)) {
+  const std::optional<double> value = parse_number<double>(written);
+  if (!value || !std::isfinite(*value)) {
     fail(text, "is too large or too small for a number");
   }
-  return value;
+  return *value;
 }
 
 /// The value with the largest unit that divides it.

@@ -62,7 +62,7 @@ machine::OperationCycles operations_of(const machine::EnergyConfig& energy) {
 // One cache, with the keys that say its size and its figures.
 struct NamedCache {
   memory::CacheConfig cache;
-  std::string size_key;
+  std::string_view size_key;
   std::string_view level;  // "l1" or "l2"
 };
 
@@ -77,7 +77,7 @@ machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const Name
   if (!fitted) {
     const std::string level = "energy." + std::string(named.level);
     throw sim::KeyError(
-        named.size_key,
+        std::string(named.size_key),
         "the energy of a cache of " + sim::print_size(static_cast<std::int64_t>(named.cache.size)) +
             " with lines of " + std::to_string(named.cache.line) +
             " bytes is not known: it is fitted to caches of " + sim::print_size(least_fitted_size) + " to " +
@@ -103,21 +103,9 @@ CacheUnits add_cache(const machine::EnergyConfig& energy, const NamedCache& name
 }
 
 void add_first_level(const machine::MachineConfig& config, EnergyUnits& units) {
-  const machine::NodeCacheConfig& caches = config.cache;
-  switch (caches.organisation) {
-    case machine::CacheOrganisation::none:
-      break;
-    case machine::CacheOrganisation::unified:
-      units.l1[0] = add_cache(config.energy, {caches.cache, "cache.size", "l1"}, units.node_area);
-      break;
-    case machine::CacheOrganisation::split:
-      for (std::size_t i = 0; i < machine::split_caches; ++i) {
-        NamedCache named{caches.cache, "cache." + std::string(machine::split_cache_names.at(i)) + "_size",
-                         "l1"};
-        named.cache.size = caches.split_sizes.at(i);
-        units.l1.at(i) = add_cache(config.energy, named, units.node_area);
-      }
-      break;
+  const std::vector<machine::FirstLevelCache> caches = machine::first_level_caches(config.cache);
+  for (std::size_t i = 0; i < caches.size(); ++i) {
+    units.l1.at(i) = add_cache(config.energy, {caches[i].cache, caches[i].size_key, "l1"}, units.node_area);
   }
 }
 

@@ -61,6 +61,21 @@ void check_distribution(const MachineConfig& config) {
 
 }  // namespace
 
+std::vector<FirstLevelCache> first_level_caches(const NodeCacheConfig& config) {
+  if (config.organisation == CacheOrganisation::none) {
+    return {};
+  }
+  if (config.organisation == CacheOrganisation::unified) {
+    return {{config.cache, "cache.size"}};
+  }
+  std::vector<FirstLevelCache> caches;
+  for (std::size_t i = 0; i < split_caches; ++i) {
+    caches.push_back({config.cache, split_size_keys[i]});
+    caches.back().cache.size = config.split_sizes[i];
+  }
+  return caches;
+}
+
 bool writes_done_later(const MachineConfig& config) {
   return config.placement == Placement::distributed ||
          (config.interconnect.kind == memory::InterconnectKind::bus &&
@@ -108,16 +123,8 @@ void check(const MachineConfig& config) {
     throw sim::KeyError("local.width", "local memory must be at least one byte wide");
   }
   check_dram(config);
-  if (config.cache.organisation == CacheOrganisation::unified) {
-    (void)sim::KeyError::reported_under("cache.size", [&] { return memory::shape_of(config.cache.cache); });
-  }
-  if (config.cache.organisation == CacheOrganisation::split) {
-    for (std::size_t i = 0; i < split_caches; ++i) {
-      memory::CacheConfig part = config.cache.cache;
-      part.size = config.cache.split_sizes[i];
-      (void)sim::KeyError::reported_under("cache." + std::string(split_cache_names[i]) + "_size",
-                                          [&] { return memory::shape_of(part); });
-    }
+  for (const FirstLevelCache& first : first_level_caches(config.cache)) {
+    (void)sim::KeyError::reported_under(first.size_key, [&] { return memory::shape_of(first.cache); });
   }
   check_second_level(config);
   check_counting(config);

@@ -45,6 +45,8 @@ inline constexpr std::array<std::string_view, 3> cache_organisation_names = {"no
 inline constexpr std::size_t split_caches = 4;
 inline constexpr std::array<std::string_view, split_caches> split_cache_names = {"node", "list", "primitive",
                                                                                  "shading"};
+inline constexpr std::array<std::string_view, split_caches> split_size_keys = {
+    "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
 
 struct NodeCacheConfig {
   CacheOrganisation organisation = CacheOrganisation::unified;
@@ -52,6 +54,14 @@ struct NodeCacheConfig {
   std::array<std::uint64_t, split_caches> split_sizes = {4096, 2048, 8192, 2048};  ///< bytes
   std::int64_t hit_cycles = 1;
 };
+
+struct FirstLevelCache {
+  memory::CacheConfig cache;
+  std::string_view size_key;  ///< "cache.size" or one of split_size_keys
+};
+
+/// The caches of one node: none, the unified one, or the split ones in the order of split_cache_names.
+[[nodiscard]] std::vector<FirstLevelCache> first_level_caches(const NodeCacheConfig& config);
 
 /// The memory of a replicated database or of private trees: no contention, a line takes `access_cycles` plus
 /// its beats. A distributed database's memory takes as long, but serves one access after the other.

@@ -45,7 +45,18 @@ Cell hilbert_cell(std::uint64_t index, std::uint32_t side) {
   return cell;
 }
 
+// How many packets lie side by side.
+std::uint32_t parts_of(std::uint32_t length, std::uint32_t packet_length) {
+  return length / packet_length + (length % packet_length != 0 ? 1 : 0);
+}
+
 }  // namespace
+
+std::uint64_t packets_of_image(std::uint32_t width, std::uint32_t height, const PacketConfig& config) {
+  return config.width == 0 || config.height == 0
+             ? 0
+             : std::uint64_t{parts_of(width, config.width)} * parts_of(height, config.height);
+}
 
 PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, const PacketConfig& config)
     : image_width_(image_width), image_height_(image_height), config_(config), columns_(0), count_(0) {
@@ -54,8 +65,8 @@ PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, co
   }
   config_.width = std::min(config.width, std::max(image_width, 1U));
   config_.height = std::min(config.height, std::max(image_height, 1U));
-  columns_ = (image_width + config_.width - 1) / config_.width;
-  const std::uint32_t rows = (image_height + config_.height - 1) / config_.height;
+  columns_ = parts_of(image_width, config_.width);
+  const std::uint32_t rows = parts_of(image_height, config_.height);
   count_ = std::uint64_t{columns_} * rows;
   if (count_ > most_packets) {
     throw sim::KeyError("packets.width",
@@ -66,11 +77,22 @@ PacketList::PacketList(std::uint32_t image_width, std::uint32_t image_height, co
   }
   const std::uint32_t side = std::bit_ceil(std::max(columns_, rows));
   order_.reserve(count_);
-  for (std::uint64_t index = 0; index < std::uint64_t{side} * side; ++index) {
+  // Both curves go through a block of 2^k x 2^k cells in 4^k steps that begin at a multiple of 4^k, so blocks
+  // beyond the image are passed over whole.
+  const auto is_beyond = [&](const Cell& cell, std::uint32_t block) {
+    return (cell.x & ~(block - 1)) >= columns_ || (cell.y & ~(block - 1)) >= rows;
+  };
+  for (std::uint64_t index = 0; index < std::uint64_t{side} * side;) {
     const Cell cell = config.order == PacketOrder::morton ? morton_cell(index) : hilbert_cell(index, side);
-    if (cell.x < columns_ && cell.y < rows) {
+    std::uint32_t block = 1;
+    if (!is_beyond(cell, block)) {
       order_.push_back(cell.y * columns_ + cell.x);
+    } else {
+      while (index % (std::uint64_t{block} * block * 4) == 0 && is_beyond(cell, 2 * block)) {
+        block *= 2;
+      }
     }
+    index += std::uint64_t{block} * block;
   }
 }
 

@@ -32,6 +32,10 @@ struct Packet {
   std::uint32_t y1 = 0;
 };
 
+/// How many packets of this size an image has, whatever their order. 0 if a packet has no pixel.
+[[nodiscard]] std::uint64_t packets_of_image(std::uint32_t width, std::uint32_t height,
+                                             const PacketConfig& config);
+
 /// All packets of a frame in handing-out order. Throws UserError for a packet size of zero or more than
 /// most_packets packets.
 class PacketList {

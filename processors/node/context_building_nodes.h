@@ -45,6 +45,11 @@ class ContextBuildingNodes final : public ContextBuildingBase<Caches> {
       : Base(input, engine, host, walk::GuardedCaches<Caches>(input, std::move(caches))),
         stops_(input.config.all_nodes()) {}
 
+  void finish() override {
+    Base::count_late_arrivals();
+    Base::finish();
+  }
+
   std::size_t bytes_per_node() const override { return Base::context_bytes() + Base::building_bytes(); }
 
  private:

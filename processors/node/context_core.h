@@ -102,7 +102,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
     std::uint32_t live = 0;  // contexts that may still get a packet
     bool waiting = true;     // no context is ready
     bool fresh = true;       // no context has been worked on yet
-    bool due = false;        // the walk has stopped for what is decided at its time, not at a miss
+    bool due = false;  // the walk has stopped at what other nodes may still change; an event of then goes on
   };
 
   ContextCore(const walk::ReplayInput& input, sim::Engine& engine, Host& host)
@@ -143,6 +143,10 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   Context& context_of(std::uint32_t node, std::uint32_t context) {
     return contexts_[std::size_t{node} * input_.config.contexts + context];
   }
+  // A prefetched line may arrive after all nodes are done; the frame ends when it has. What is built before
+  // the frame waits for no prefetch.
+  void count_late_arrivals() { end_ = std::max(end_, last_arrival_); }
+
   memory::Service& service_of(std::uint32_t node, std::uint32_t slot) {
     return services_[std::size_t{node} * ports_ + slot];
   }
@@ -289,7 +293,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   // The course of a transaction is known.
   void arrived(std::uint32_t node, std::uint32_t slot, const memory::Service& service) {
     service_of(node, slot) = service;
-    end_ = std::max(end_, service.done);  // a prefetched line may arrive after all nodes are done
+    last_arrival_ = std::max(last_arrival_, service.done);
     auto& caches = derived().walker_.caches();
     if constexpr (std::remove_reference_t<decltype(caches)>::present) {
       caches.view(node).arrives(slot, service.done);
@@ -454,6 +458,7 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
   sim::LargeVector<Core> cores_;
   sim::LargeVector<Context> contexts_;  // node by node
   // The last transaction of each port, node by node; done is `never` while its end is not known.
+  sim::Ticks last_arrival_ = 0;
   sim::LargeVector<memory::Service> services_;
 };
 

@@ -39,6 +39,7 @@ class ContextNodes final : public ContextCore<ContextNodes<Caches>, walk::Cursor
   }
 
   void finish() override {
+    Base::count_late_arrivals();
     for (cost::NodeStatistics& node : statistics_) {
       cost::add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
       node.time[static_cast<std::size_t>(cost::Activity::idle)] = end_ - node.finish;

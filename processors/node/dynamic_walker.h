@@ -44,7 +44,7 @@ class DynamicWalker {
         caches_(std::move(caches)),
         line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
-        copies_(plan_, topology_, layout_, input.config, unit_shift_),
+        copies_(plan_, topology_, layout_, input.config),
         addresses_(plan_, topology_, layout_, copies_),
         lists_(topology_),
         ticks_(cost::step_ticks(input.config, input.log)),

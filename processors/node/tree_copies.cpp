@@ -1,32 +1,60 @@
 #include "processors/node/tree_copies.h"
 
+#include <bit>
 #include <string>
 
 #include "sim/key_error.h"
 
 namespace marti::processors::node {
 
+namespace {
+
+bool have_private_trees(const machine::MachineConfig& config) {
+  return config.build.sharing == machine::Sharing::private_trees;
+}
+
+std::uint32_t copies_of(const machine::MachineConfig& config) {
+  return have_private_trees(config) ? config.all_nodes() : config.clusters;
+}
+
+}  // namespace
+
+TreeCopies::Lines TreeCopies::lines_of(const walk::TreePlan& plan, const memory::Layout& layout,
+                                       const machine::MachineConfig& config) {
+  if (have_private_trees(config) || plan.lazy().empty()) {
+    return {};
+  }
+  const std::uint64_t line = config.reference_bytes();
+  const auto lines_below = [&](memory::Address end) {
+    return static_cast<std::uint32_t>((end + line - 1) / line);
+  };
+  Lines lines;
+  lines.initial =
+      lines_below(layout.base(memory::RecordKind::node) + layout.section_bytes(memory::RecordKind::node));
+  lines.lower_begin = static_cast<std::uint32_t>(plan.lower_base() / line);
+  lines.all = lines.initial + std::size_t{lines_below(plan.end()) - lines.lower_begin};
+  return lines;
+}
+
+std::uint64_t TreeCopies::host_bytes(const walk::TreePlan& plan, const memory::Layout& layout,
+                                     const machine::MachineConfig& config) {
+  return std::uint64_t{copies_of(config)} *
+         (plan.lazy().size() * 13 + lines_of(plan, layout, config).all * 5 + 12);
+}
+
 TreeCopies::TreeCopies(const walk::TreePlan& plan, const accel::Topology& topology,
-                       const memory::Layout& layout, const machine::MachineConfig& config,
-                       unsigned line_shift)
+                       const memory::Layout& layout, const machine::MachineConfig& config)
     : plan_(plan),
       topology_(topology),
-      private_(config.build.sharing == machine::Sharing::private_trees),
+      private_(have_private_trees(config)),
       nodes_(config.nodes),
-      copies_(private_ ? config.all_nodes() : config.clusters),
+      copies_(copies_of(config)),
       lazies_(plan.lazy().size()),
-      line_shift_(line_shift),
+      line_shift_(static_cast<unsigned>(std::countr_zero(config.reference_bytes()))),
       node_bytes_(config.layout.node_bytes),
+      lines_(lines_of(plan, layout, config)),
       node_section_(layout.base(memory::RecordKind::node)) {
-  const auto lines_below = [&](memory::Address end) {
-    return static_cast<std::uint32_t>((end + (memory::Address{1} << line_shift) - 1) >> line_shift);
-  };
-  if (!private_ && lazies_ != 0) {
-    initial_lines_ = lines_below(node_section_ + layout.section_bytes(memory::RecordKind::node));
-    lower_begin_ = static_cast<std::uint32_t>(plan.lower_base() >> line_shift);
-    lines_ = initial_lines_ + std::size_t{lines_below(plan.end()) - lower_begin_};
-  }
-  const std::uint64_t bytes = std::uint64_t{copies_} * (lazies_ * 13 + lines_ * 5 + 12);
+  const std::uint64_t bytes = host_bytes(plan, layout, config);
   if (bytes > most_bytes) {
     throw sim::KeyError("build.sharing",
                         "keeping track of " + std::to_string(copies_) + " trees with " +
@@ -38,10 +66,10 @@ TreeCopies::TreeCopies(const walk::TreePlan& plan, const accel::Topology& topolo
   built_.resize(copies_ * lazies_);
   builder_.resize(private_ ? 0 : copies_ * lazies_);
   next_.assign(copies_, plan.first_block());
-  open_.resize(copies_ * lines_);
-  cached_.resize(copies_ * lines_);
-  allocated_.assign(copies_, lower_begin_);
-  if (lines_ == 0) {
+  open_.resize(copies_ * lines_.all);
+  cached_.resize(copies_ * lines_.all);
+  allocated_.assign(copies_, lines_.lower_begin);
+  if (lines_.all == 0) {
     return;
   }
   for (const walk::TreePlan::LazyBranch& branch : plan.lazy()) {
@@ -53,11 +81,11 @@ TreeCopies::TreeCopies(const walk::TreePlan& plan, const accel::Topology& topolo
 }
 
 std::size_t TreeCopies::index_of(std::uint32_t copy, std::uint32_t line) const {
-  return copy * lines_ + (line < initial_lines_ ? line : initial_lines_ + (line - lower_begin_));
+  return copy * lines_.all + (line < lines_.initial ? line : lines_.initial + (line - lines_.lower_begin));
 }
 
 void TreeCopies::count_open(std::uint32_t copy, memory::Address begin, std::uint64_t bytes, std::int32_t by) {
-  if (lines_ == 0 || bytes == 0) {
+  if (lines_.all == 0 || bytes == 0) {
     return;
   }
   const auto last = static_cast<std::uint32_t>((begin + bytes - 1) >> line_shift_);
@@ -103,20 +131,21 @@ void TreeCopies::publish(std::uint32_t copy, std::uint32_t lazy) {
 }
 
 LineStates TreeCopies::lines(std::uint32_t copy) const {
-  if (lines_ == 0) {
+  if (lines_.all == 0) {
     return {};
   }
-  return {open_.data() + copy * lines_, initial_lines_, lower_begin_, &allocated_[copy]};
+  return {open_.data() + copy * lines_.all, lines_.initial, lines_.lower_begin, &allocated_[copy]};
 }
 
 void TreeCopies::note_cached(std::uint32_t copy, std::uint32_t line) {
-  if (lines_ != 0 && !lines(copy).settled(line)) {
+  if (lines_.all != 0 && !lines(copy).settled(line)) {
     cached_[index_of(copy, line)] = 1;
   }
 }
 
 bool TreeCopies::maybe_cached(std::uint32_t copy, std::uint32_t line) const {
-  return lines_ != 0 && (line < initial_lines_ || line >= lower_begin_) && cached_[index_of(copy, line)] != 0;
+  return lines_.all != 0 && (line < lines_.initial || line >= lines_.lower_begin) &&
+         cached_[index_of(copy, line)] != 0;
 }
 
 }  // namespace marti::processors::node

@@ -28,9 +28,13 @@ struct LineStates {
 /// All copies: one for each cluster when trees are shared, one for each processor node when private.
 class TreeCopies {
  public:
-  /// Throws UserError when the copies would take more than `most_bytes` of the host's memory.
+  /// Bytes of the host's memory that the copies of a machine take. `plan` must have been placed.
+  [[nodiscard]] static std::uint64_t host_bytes(const walk::TreePlan& plan, const memory::Layout& layout,
+                                                const machine::MachineConfig& config);
+
+  /// Throws KeyError when the copies would take more than `most_bytes` of the host's memory.
   TreeCopies(const walk::TreePlan& plan, const accel::Topology& topology, const memory::Layout& layout,
-             const machine::MachineConfig& config, unsigned line_shift);
+             const machine::MachineConfig& config);
 
   /// The copy that a processor node reads.
   [[nodiscard]] std::uint32_t copy_of(std::uint32_t processor) const {
@@ -68,6 +72,15 @@ class TreeCopies {
   static constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30U;
 
  private:
+  // Which of a copy's lines are kept track of, for shared trees: those of the node section, then those of the
+  // blocks.
+  struct Lines {
+    std::uint32_t initial = 0;
+    std::uint32_t lower_begin = 0xffffffffU;
+    std::size_t all = 0;
+  };
+  static Lines lines_of(const walk::TreePlan& plan, const memory::Layout& layout,
+                        const machine::MachineConfig& config);
   [[nodiscard]] std::size_t at(std::uint32_t copy, std::uint32_t lazy) const {
     return std::size_t{copy} * lazies_ + lazy;
   }
@@ -87,10 +100,7 @@ class TreeCopies {
   std::vector<std::uint8_t> built_;
   std::vector<std::uint32_t> builder_;
   std::vector<memory::Address> next_;  // for each copy: the address of its next block
-  // Shared trees: for each copy the lines of the node section, then those of the blocks.
-  std::uint32_t initial_lines_ = 0;
-  std::uint32_t lower_begin_ = 0xffffffffU;
-  std::size_t lines_ = 0;
+  Lines lines_;
   std::vector<std::uint32_t> open_;
   std::vector<std::uint8_t> cached_;
   std::vector<std::uint32_t> allocated_;

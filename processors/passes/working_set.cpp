@@ -21,24 +21,20 @@ namespace {
 // The caches of one node, as configured.
 std::vector<memory::CacheShape> shapes_of(const machine::NodeCacheConfig& config) {
   std::vector<memory::CacheShape> shapes;
-  if (config.organisation == machine::CacheOrganisation::unified) {
-    shapes.push_back(memory::shape_of(config.cache));
-  } else if (config.organisation == machine::CacheOrganisation::split) {
-    for (const std::uint64_t size : config.split_sizes) {
-      memory::CacheConfig part = config.cache;
-      part.size = size;
-      shapes.push_back(memory::shape_of(part));
-    }
+  for (const machine::FirstLevelCache& first : machine::first_level_caches(config)) {
+    shapes.push_back(memory::shape_of(first.cache));
   }
   return shapes;
 }
+
+std::uint32_t ways_counted(const memory::CacheShape& shape) { return std::max(shape.ways, counted_ways); }
 
 // The passes over the references to one cache.
 class CachePass {
  public:
   explicit CachePass(const memory::CacheShape& shape) : shape_(shape) {
     if (shape.sets > 1) {
-      ways_.emplace(std::vector{shape.sets}, std::max(shape.ways, counted_ways));
+      ways_.emplace(std::vector{shape.sets}, ways_counted(shape));
     }
   }
 
@@ -161,7 +157,21 @@ void check_working_set(const machine::MachineConfig& config) {
                           "the working set is told for caches of one set, or of sets of at most " +
                               std::to_string(most_counted_ways) + " ways, not " + std::to_string(shape.ways));
     }
+    if (shape.sets > 1 && std::uint64_t{shape.sets} * ways_counted(shape) > memory::most_lines) {
+      throw sim::KeyError("count.working_set", "a set is told of with at least " +
+                                                   std::to_string(counted_ways) +
+                                                   " ways, and so the cache's " + std::to_string(shape.sets) +
+                                                   " sets would have more than 2^28 lines");
+    }
   }
+}
+
+std::uint64_t working_set_bytes(const machine::MachineConfig& config) {
+  std::uint64_t bytes = 0;
+  for (const memory::CacheShape& shape : shapes_of(config.cache)) {
+    bytes += shape.sets > 1 ? sizeof(std::uint32_t) * shape.sets * ways_counted(shape) : 0;
+  }
+  return config.count.working_set ? bytes : 0;
 }
 
 WorkingSet working_set(const walk::PacketsOfNodes& packets_of_nodes, unsigned threads) {

@@ -43,6 +43,10 @@ inline constexpr std::uint32_t most_counted_ways = 4096;
 /// Throws UserError with the reason when the working sets of the machine's nodes cannot be determined.
 void check_working_set(const machine::MachineConfig& config);
 
+/// Bytes of the host's memory that one thread of working_set() takes for caches; 0 if none are asked for.
+/// What it takes for each line of memory comes on top.
+[[nodiscard]] std::uint64_t working_set_bytes(const machine::MachineConfig& config);
+
 /// Call it after the replay of a machine that passes check_working_set(), while the log still exists.
 /// `threads` host threads (0: all) share the nodes; the result does not depend on their number.
 [[nodiscard]] WorkingSet working_set(const walk::PacketsOfNodes& packets_of_nodes, unsigned threads = 0);

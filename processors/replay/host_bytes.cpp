@@ -1,9 +1,20 @@
 #include "processors/replay/host_bytes.h"
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "memory/cache.h"
 #include "memory/tags.h"
 #include "processors/cost/accounting.h"
+#include "processors/machine/packets.h"
+#include "processors/node/build_result.h"
+#include "processors/node/dynamic_cursor.h"
+#include "processors/node/tree_copies.h"
+#include "processors/walk/build_start.h"
+#include "processors/walk/cache_counting.h"
 #include "processors/walk/log_cursor.h"
+#include "processors/walk/record_places.h"
 #include "sim/event_queue.h"
 
 namespace marti::processors::replay {
@@ -14,9 +25,11 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
   const memory::CacheShape shape = memory::shape_of(cache);
   // Hashed sets keep a list entry and two to four table slots for each line.
   const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
-  const std::uint64_t tree_bytes =
-      cache.replacement == memory::Replacement::plru ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
-  return shape.lines() * bytes_a_line + tree_bytes;
+  // Each set has a tree, whose bits take at least a word, or a stream of random numbers.
+  const bool has_state =
+      cache.replacement == memory::Replacement::plru || cache.replacement == memory::Replacement::random;
+  const std::uint64_t state_bytes = has_state ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
+  return shape.lines() * bytes_a_line + state_bytes;
 }
 
 }  // namespace
@@ -26,14 +39,8 @@ std::uint64_t host_bytes(const machine::MachineConfig& config) {
   constexpr std::uint64_t bytes_a_node =
       2 * sizeof(cost::NodeStatistics) + sizeof(walk::Cursor) + sim::EventQueue::bytes_an_event + 8;
   std::uint64_t tags = 0;
-  if (config.cache.organisation == machine::CacheOrganisation::unified) {
-    tags = tag_bytes(config.cache.cache);
-  } else if (config.cache.organisation == machine::CacheOrganisation::split) {
-    for (const std::uint64_t size : config.cache.split_sizes) {
-      memory::CacheConfig part = config.cache.cache;
-      part.size = size;
-      tags += tag_bytes(part);
-    }
+  for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+    tags += tag_bytes(first.cache);
   }
   if (config.l2.sharing == machine::SecondLevel::private_caches) {
     tags += tag_bytes(machine::second_level_cache(config)) + sizeof(memory::CacheCounters);
@@ -64,6 +71,31 @@ std::uint64_t host_bytes(const machine::MachineConfig& config) {
       sim::EventQueue::bytes_of_days(std::size_t{config.all_nodes()} * config.ports_of_node());
   return homes + events +
          config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
+}
+
+std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config) {
+  std::uint64_t bytes = host_bytes(config);
+  if (config.packets.order != machine::PacketOrder::scanline) {
+    bytes += sizeof(std::uint32_t) * machine::packets_of_image(log.width, log.height, config.packets);
+  }
+  if (!config.count.any() && config.build.sharing == machine::Sharing::given) {
+    return bytes;
+  }
+  std::optional<walk::TreePlan> plan;
+  if (config.build.sharing != machine::Sharing::given) {
+    std::vector<walk::BranchStart> starts = walk::branch_starts(log.topology, config.build);
+    walk::check_starts(log.topology, starts);
+    plan.emplace(log.topology, std::move(starts), config);
+  }
+  const memory::Layout layout = walk::layout_of(log, config, plan);
+  if (plan) {
+    // Counts as of a node above, and one larger cursor for each context.
+    const std::uint64_t cursors = config.contexts * (sizeof(node::DynamicCursor) - sizeof(walk::Cursor));
+    bytes += node::TreeCopies::host_bytes(*plan, layout, config) +
+             config.all_nodes() * (2 * sizeof(node::BuildCounts) + cursors);
+  }
+  const memory::Address end = plan ? plan->end() : layout.end();
+  return bytes + walk::CacheCounting::host_bytes(config, end / config.reference_bytes() + 1);
 }
 
 }  // namespace marti::processors::replay

@@ -11,39 +11,35 @@ namespace marti::processors::walk {
 
 namespace {
 
-// The number of lines of each private first-level cache of a node.
-std::vector<std::uint64_t> lines_of_caches(const machine::MachineConfig& config) {
-  std::vector<std::uint64_t> lines;
-  if (config.cache.organisation == machine::CacheOrganisation::unified) {
-    lines.push_back(config.cache.cache.size / config.cache.cache.line);
-  } else if (config.cache.organisation == machine::CacheOrganisation::split) {
-    for (const std::uint64_t size : config.cache.split_sizes) {
-      lines.push_back(size / config.cache.cache.line);
-    }
-  }
-  return lines;
-}
+std::uint64_t lines_of(const machine::FirstLevelCache& first) { return first.cache.size / first.cache.line; }
 
 }  // namespace
 
-CacheCounting::CacheCounting(const machine::MachineConfig& config, std::uint64_t lines) {
-  const std::vector<std::uint64_t> caches = lines_of_caches(config);
-  // A bit for each line and node for each count that is kept, and a hashed line of a fully associative cache.
-  std::uint64_t bytes = config.count.sharing ? lines / 8 : 0;
+std::uint64_t CacheCounting::host_bytes(const machine::MachineConfig& config, std::uint64_t lines) {
+  std::uint64_t bytes = 0;
+  if (config.count.sharing) {
+    // For each node a bit for each line, and for each cluster a number.
+    bytes += config.all_nodes() * (lines / 8) + config.clusters * lines * sizeof(std::uint32_t);
+  }
   if (config.count.miss_classes) {
-    for (const std::uint64_t cache_lines : caches) {
-      bytes += lines / 4 + 28 * cache_lines;
+    // Two bits for each line, and a fully associative cache as large as the node's: hashed, 28 bytes a line.
+    for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+      bytes += config.all_nodes() * (lines / 4 + 28 * lines_of(first));
     }
   }
-  if (bytes > most_bytes / config.all_nodes()) {
+  return bytes;  // at most 2^24 nodes, 2^32 lines of memory and 2^28 of a cache: no overflow
+}
+
+CacheCounting::CacheCounting(const machine::MachineConfig& config, std::uint64_t lines) {
+  if (host_bytes(config, lines) > most_bytes) {
     throw sim::KeyError(std::string(machine::key_of(config.count)),
                         "[count] would take more than " +
                             sim::print_size(static_cast<std::int64_t>(most_bytes)) +
                             " for so many nodes and so large a database; count on a smaller machine");
   }
   if (config.count.miss_classes) {
-    for (const std::uint64_t cache_lines : caches) {
-      classifiers_.emplace_back(cache_lines, config.all_nodes());
+    for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+      classifiers_.emplace_back(lines_of(first), config.all_nodes());
     }
   }
   if (config.count.sharing) {

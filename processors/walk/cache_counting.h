@@ -26,8 +26,10 @@ struct CacheCountResult {
 
 class CacheCounting {
  public:
-  /// `lines` is one past the last line of memory. Throws UserError when the counting may take more than
-  /// `most_bytes` of the host's memory.
+  /// Bytes of the host's memory that counting may take. `lines` is one past the last line of memory.
+  [[nodiscard]] static std::uint64_t host_bytes(const machine::MachineConfig& config, std::uint64_t lines);
+
+  /// Throws KeyError when the counting may take more than `most_bytes` of the host's memory.
   CacheCounting(const machine::MachineConfig& config, std::uint64_t lines);
 
   /// Counts a reference of a node to a line of its cache number `cache` (0 unless the caches are split).

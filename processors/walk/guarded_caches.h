@@ -1,11 +1,10 @@
 // The private caches of nodes with contexts or prefetches: tags as without them, and in addition the lines
 // that are still on their way from memory.
 //
-// A line on its way is known by the transaction that brings it. Without a second level, one that the first
-// level has pushed out meanwhile is fetched again. A private second level has one place for the lines of all
-// first-level caches of its node and gets the same data. So with one, a reference that its own first-level
-// cache cannot serve waits for the line that is on its way, whichever cache asked for it. A cache that has
-// had the line for longer serves it at once.
+// A line on its way is known by the transaction that brings it. Without a second level, a line that the first
+// level has pushed out before it came is fetched again. A private second level serves all first-level caches
+// of its node and receives the data too. So with one, a reference that misses its first-level cache while the
+// line is on its way to the node, for any of its caches, waits for that transaction and starts no other.
 #pragma once
 
 #include <type_traits>

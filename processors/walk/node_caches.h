@@ -102,14 +102,8 @@ class AnyCaches {
  private:
   static std::vector<memory::TagArray> tags_of(const machine::MachineConfig& config) {
     std::vector<memory::TagArray> tags;
-    if (config.cache.organisation == machine::CacheOrganisation::unified) {
-      tags.emplace_back(config.cache.cache, config.all_nodes());
-    } else if (config.cache.organisation == machine::CacheOrganisation::split) {
-      for (const std::uint64_t size : config.cache.split_sizes) {
-        memory::CacheConfig part = config.cache.cache;
-        part.size = size;
-        tags.emplace_back(part, config.all_nodes());
-      }
+    for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+      tags.emplace_back(first.cache, config.all_nodes());
     }
     return tags;
   }

@@ -100,10 +100,8 @@ class StrippedLog::PacketCaches {
   /// References to the first `taken_out` lines of a set's list are taken out of all stripped logs.
   PacketCaches(const machine::MachineConfig& config, std::uint32_t taken_out)
       : taken_out_(taken_out), hit_(config.cache.hit_cycles) {
-    memory::CacheConfig cache = config.cache.cache;
-    for (std::size_t i = 0; i < caches; ++i) {
-      cache.size = Split ? config.cache.split_sizes[i] : cache.size;
-      lists_.emplace_back(memory::shape_of(cache).sets);
+    for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+      lists_.emplace_back(memory::shape_of(first.cache).sets);
     }
   }
 
@@ -139,9 +137,9 @@ class StrippedLog::PacketCaches {
     return end;
   }
 
-  /// Look-ups have left each set's lines in the order of their first references, without the lines of sure
-  /// misses. Where a set has several, the lines that the caches hold are asked for again, in the order of
-  /// their last references.
+  /// While a packet was walked, each set's list got a line at its first reference. At the packet's end a
+  /// cache's tags must be in the order of last references. So where a set has several lines, those that the
+  /// caches still hold are referred to once more in that order.
   void end_packet() {
     for (std::size_t number = 0; number < caches; ++number) {
       const auto* const kind = std::find(split_cache_of.begin(), split_cache_of.end(), number);
@@ -202,14 +200,8 @@ std::string StrippedLog::key_of(const machine::MachineConfig& config) {
                                     cost.integer, cost.load, cost.store, config.cache.hit_cycles}) {
     add(cycles);
   }
-  memory::CacheConfig cache = config.cache.cache;
-  if (config.cache.organisation == machine::CacheOrganisation::unified) {
-    add(memory::shape_of(cache).sets);
-    return key;
-  }
-  for (const std::uint64_t size : config.cache.split_sizes) {
-    cache.size = size;
-    add(memory::shape_of(cache).sets);
+  for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
+    add(memory::shape_of(first.cache).sets);
   }
   return key;
 }

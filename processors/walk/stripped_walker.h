@@ -36,8 +36,8 @@ class StrippedWalker {
   [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] const BehindCache& behind() const { return behind_; }
 
-  /// The node begins the packet at its cursor. From here to the end of the packet the statistics' hits have
-  /// no meaning.
+  /// The node begins the packet at its cursor. Hits are added for the whole packet at its end: do
+  /// not read the statistics' hits before.
   void begin_packet(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
     if (cursor.tags == Tags::empty && tags_may_be_late_) {
       cursor.tags = Tags::late;

@@ -8,6 +8,7 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,6 +23,7 @@
 #include "scenes/tessellate.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/input_files.h"
 #include "sim/made_directory.h"
 #include "sim/memory_budget.h"
 #include "sim/shown.h"
@@ -320,7 +322,8 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
       ->check(CLI::IsMember({"din"}));
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
-      ->type_name("NODES");
+      ->type_name("NODES")
+      ->check([](const std::string& nodes) { return nodes.empty() ? "name at least one node" : ""; });
   trace->add_option("--limit", arguments.limit, "refuse to write more than this, as \"4 GiB\"")
       ->type_name("SIZE");
   trace->callback([&] {
@@ -483,6 +486,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
       throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
     }
     scenes::Scene source = open(arguments);
+    sim::refuse_input(arguments.target);
     scenes::tessellate(source);
     scenes::export_glb(source, arguments.target, host::encode_png);
     std::string text = "wrote " + arguments.target + "\n";
@@ -573,7 +577,10 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // CLI11 also throws for --help and --version, with exit code 0; all else is an error of the user's input.
     if (error.get_exit_code() == 0) {
-      return app.exit(error);
+      std::ostringstream text;
+      const int status = app.exit(error, text, text);
+      print(text.str());
+      return status;
     }
     throw sim::UserError(command_error(app, error, words));
   }

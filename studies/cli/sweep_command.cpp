@@ -56,7 +56,7 @@ void join(sweep::Ranks& ranks, const SweepArguments& arguments) {
     sim::Config config =
         sim::Config::from_text(sweep::sweep_schema(), text, arguments.config, arguments.assignments);
     sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
-    return sweep::JoinedSweep{std::move(plan), memory_of(config, &ranks).limit()};
+    return sweep::JoinedSweep{std::move(plan), memory_of(config, &ranks)};
   });
 }
 

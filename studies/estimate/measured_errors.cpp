@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "sim/error.h"
+#include "sim/parse_number.h"
 #include "studies/estimate/simulator_methods.h"
 
 namespace marti::studies::estimate {
@@ -56,12 +56,11 @@ double number_of(std::string_view text) {
   if (text == "inf") {
     return std::numeric_limits<double>::infinity();
   }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0.0)) {
+  const std::optional<double> value = sim::parse_number<double>(text);
+  if (!value || !(*value >= 0.0)) {
     fail("\"" + std::string(text) + "\" is no number from 0 on");
   }
-  return value;
+  return *value;
 }
 
 std::size_t whole_number_of(std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "processors/machine/machine_config.h"
@@ -38,6 +39,9 @@ class MachineFigures {
 struct Estimate {
   MachineFigures value;
   MachineFigures half_width;
+  /// The misses that there would be if all nodes' caches held whatever the packets before had brought in:
+  /// their interval begins no higher; infinite where the method does not know it.
+  double fewest_misses = std::numeric_limits<double>::infinity();
   double references = 0.0;   ///< lines touched by the machine in the whole frame; the method's own figure
   std::uint64_t events = 0;  ///< handled to get it
   std::uint64_t words = 0;   ///< of the log, walked to get it

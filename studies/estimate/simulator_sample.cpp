@@ -116,14 +116,19 @@ LatticeWork::LatticeWork(const processors::program::WorkLog& log,
     : lattice_(lattice), pixels_(static_cast<double>(log.width) * static_cast<double>(log.height)) {
   std::vector<double> times;
   std::vector<double> misses;
+  std::vector<double> fewest;
   for (const processors::passes::PixelFigures& pixel :
        processors::passes::pixel_figures(log, machine, lattice.pixels(), visits)) {
     of_pixels_.push_back({static_cast<double>(pixel.hit_time), expected_misses(pixel)});
     times.push_back(of_pixels_.back().hit_time);
     misses.push_back(of_pixels_.back().misses);
+    fewest.push_back(static_cast<double>(pixel.misses_again));
   }
   times = lattice.expected_of_packets(times, packets);
   misses = lattice.expected_of_packets(misses, packets);
+  for (const double of_packet : lattice.expected_of_packets(fewest, packets)) {
+    fewest_misses_ += of_packet;
+  }
   for (std::size_t packet = 0; packet < times.size(); ++packet) {
     of_packets_.push_back({times[packet], misses[packet]});
     all_.hit_time += times[packet];
@@ -191,6 +196,7 @@ SampledMachine sample_machine(const processors::program::WorkLog& log,
   estimate.value[Figure::end] = end;
   estimate.value[Figure::misses] = missed.total;
   estimate.half_width[Figure::misses] = of_misses;
+  estimate.fewest_misses = work.fewest_misses();
   if (busy > 0.0) {
     estimate.half_width[Figure::use] =
         estimate.value[Figure::use] * std::max(estimate.half_width[Figure::end], of_misses);

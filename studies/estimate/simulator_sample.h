@@ -31,6 +31,9 @@ class LatticeWork {
 
   [[nodiscard]] const std::vector<KnownWork>& of_packets() const { return of_packets_; }
   [[nodiscard]] const KnownWork& all() const { return all_; }
+  /// The misses of the frame if a node had always just walked the same pixel, so that only what does not fit
+  /// its cache is missed.
+  [[nodiscard]] double fewest_misses() const { return fewest_misses_; }
   /// What share of the frame the machine's interconnect is busy, roughly.
   [[nodiscard]] double expected_use(const processors::machine::MachineConfig& machine) const;
   /// Half of the 95 % interval of all(), with what its time and its misses count for.
@@ -42,6 +45,7 @@ class LatticeWork {
   std::vector<KnownWork> of_pixels_;
   std::vector<KnownWork> of_packets_;
   KnownWork all_;
+  double fewest_misses_ = 0.0;
 };
 
 /// One machine's figures by the windows drawn.

@@ -22,14 +22,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Both ends of a figure's interval: infinite where nothing bounds it, NaN where the error is not known.
-std::pair<double, double> interval(Figure figure, double value, double half_width) {
+std::pair<double, double> interval(const Estimate& estimate, Figure figure) {
+  const double value = estimate.value[figure];
+  const double half_width = estimate.half_width[figure];
   if (!std::isfinite(half_width)) {
     return {NAN, NAN};
   }
   if (figure == Figure::use) {
     return {std::max(0.0, value - half_width), std::min(1.0, value + half_width)};
   }
-  return {value / (1.0 + half_width), half_width < 1.0 ? value / (1.0 - half_width) : HUGE_VAL};
+  const double low = value / (1.0 + half_width);
+  // A sample misses more than the frame where caches hold lines for long: its nodes have skipped the packets
+  // that bring them in.
+  return {figure == Figure::misses ? std::min(low, estimate.fewest_misses) : low,
+          half_width < 1.0 ? value / (1.0 - half_width) : HUGE_VAL};
 }
 
 // A figure with its half-width in percent and its interval; `text` writes a value.
@@ -40,7 +46,7 @@ std::string bar(const Estimate& estimate, Figure figure, const Text& text, const
   if (!std::isfinite(half_width)) {
     return fmt::format("{:<14}error not known\n", text(value));
   }
-  const auto [low, high] = interval(figure, value, half_width);
+  const auto [low, high] = interval(estimate, figure);
   const std::string percent = fmt::format("{:.{}g} %", 100.0 * half_width, half_width < 1.0 ? 2 : 3);
   return fmt::format("{:<14}+- {:<8} {} to {}\n", text(value), percent, text(low),
                      std::isfinite(high) ? text(high) : unbounded);
@@ -57,6 +63,17 @@ std::string number_bar(const Estimate& estimate, Figure figure, int digits) {
       "any number");
 }
 
+// The share of references that do not miss, with the interval that the misses leave it.
+std::string hit_ratio_bar(const Estimate& estimate) {
+  const double all = std::max(1.0, estimate.references);
+  const auto ratio = [all](double misses) { return 100.0 * std::max(0.0, 1.0 - misses / all); };
+  const std::string value = fmt::format("{:.2f} %", ratio(estimate.value[Figure::misses]));
+  const auto [fewest, most] = interval(estimate, Figure::misses);
+  return std::isnan(fewest)
+             ? fmt::format("{:<14}error not known\n", value)
+             : fmt::format("{:<14}{:<11} {:.2f} % to {:.2f} %\n", value, "", ratio(most), ratio(fewest));
+}
+
 // A figure in percent, with its half-width in points.
 std::string points_bar(double percent, double half_width, std::string_view what) {
   const std::string value = fmt::format("{:.2f} %{}", percent, what);
@@ -71,11 +88,11 @@ Json figures_json(const Estimate& estimate, bool with_speed_up) {
     if (figure == Figure::speed_up && !with_speed_up) {
       continue;
     }
-    const double value = estimate.value[figure];
-    const double half_width = estimate.half_width[figure];
-    const auto [low, high] = interval(figure, value, half_width);
-    figures[std::string(figure_names[i])] = {
-        {"value", value}, {"half_width", half_width}, {"low", low}, {"high", high}};
+    const auto [low, high] = interval(estimate, figure);
+    figures[std::string(figure_names[i])] = {{"value", estimate.value[figure]},
+                                             {"half_width", estimate.half_width[figure]},
+                                             {"low", low},
+                                             {"high", high}};
   }
   return figures;
 }
@@ -87,7 +104,6 @@ std::string estimate_text(const run::RunResult& result, const EstimatedRun& run,
   const Estimate& machine = run.sampled.machine;
   const MachineFigures& value = machine.value;
   const MachineFigures& half = machine.half_width;
-  const double share = machine.references > 0.0 ? 100.0 * value[Figure::misses] / machine.references : 0.0;
   const std::uint32_t nodes = result.machine.nodes;
   const processors::program::LogTotals& part = result.functional.totals;
   std::string text = show::scene_summary_of(result);
@@ -111,7 +127,7 @@ std::string estimate_text(const run::RunResult& result, const EstimatedRun& run,
   text += fmt::format("  on {}\n", tables::counted(nodes, "node"));
   text += "one node      " + time_bar(run.sampled.one_node, Figure::end);
   text += "misses        " + number_bar(machine, Figure::misses, 0);
-  text += "hit ratio     " + points_bar(100.0 - share, share * half[Figure::misses], "");
+  text += "hit ratio     " + hit_ratio_bar(machine);
   text += "interconnect  " + points_bar(100.0 * value[Figure::use], 100.0 * half[Figure::use], " busy");
   text += "mean wait     " + time_bar(machine, Figure::wait);
   text += "\nall other figures need an exact run, without --within\n";

@@ -151,7 +151,7 @@ sim::Config Session::config_with(const Settings& settings) const {
     }
     if (!is_control(schema_.keys()[*index])) {
       throw sim::UserError("--set " + key + "=" + value +
-                           ": is not a setting of the machine; the frame is rendered once, before the page");
+                           ": is not a setting of the machine, which are all that the page can change");
     }
     assignments.push_back(key + "=" + value);
   }

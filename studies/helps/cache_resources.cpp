@@ -1,7 +1,6 @@
 #include "studies/helps/cache_resources.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <string_view>
 
@@ -28,15 +27,14 @@ std::optional<Change> first_possible(const Changer& changer, std::string_view ke
   return std::nullopt;
 }
 
-Resource larger(const Changer& changer, Part part, std::string_view key, memory::CacheConfig cache,
-                std::uint64_t size, std::uint64_t database_bytes) {
-  cache.size = size;
+Resource larger(const Changer& changer, Part part, std::string_view key, const memory::CacheConfig& cache,
+                std::uint64_t database_bytes) {
   const memory::CacheShape shape = memory::shape_of(cache);
   const bool one_set = cache.ways == memory::full_ways;
   const auto units = static_cast<std::int64_t>(one_set ? shape.ways : shape.sets);
   const std::int64_t unit = std::int64_t{cache.line} * (one_set ? 1 : shape.ways);
-  const auto now = static_cast<std::int64_t>(size);
-  const auto all = static_cast<std::int64_t>(std::bit_ceil(std::max(database_bytes, size)));
+  const auto now = static_cast<std::int64_t>(cache.size);
+  const auto all = static_cast<std::int64_t>(std::bit_ceil(std::max(database_bytes, cache.size)));
   return {std::string(key), part, first_possible(changer, key, {unit * tenth_more(units), 2 * now}),
           first_possible(changer, key, {all, all / unit * unit + unit})};
 }
@@ -53,16 +51,8 @@ Resource more_ways(const Changer& changer, Part part, std::string_view key,
 
 void add_first_level(const Changer& changer, const processors::machine::NodeCacheConfig& cache,
                      std::uint64_t database_bytes, std::vector<Resource>& resources) {
-  if (cache.organisation == CacheOrganisation::unified) {
-    resources.push_back(
-        larger(changer, Part::caches, "cache.size", cache.cache, cache.cache.size, database_bytes));
-  } else {
-    constexpr std::array<std::string_view, processors::machine::split_caches> sizes = {
-        "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-      resources.push_back(
-          larger(changer, Part::caches, sizes[i], cache.cache, cache.split_sizes[i], database_bytes));
-    }
+  for (const auto& first : processors::machine::first_level_caches(cache)) {
+    resources.push_back(larger(changer, Part::caches, first.size_key, first.cache, database_bytes));
   }
   if (cache.cache.ways != memory::full_ways) {
     resources.push_back(more_ways(changer, Part::caches, "cache.ways", cache.cache));
@@ -85,7 +75,7 @@ void add_caches(const Changer& changer, const processors::machine::MachineConfig
   }
   if (machine.l2.sharing != SecondLevel::none) {
     const memory::CacheConfig cache = processors::machine::second_level_cache(machine);
-    resources.push_back(larger(changer, Part::second_level, "l2.size", cache, cache.size, database_bytes));
+    resources.push_back(larger(changer, Part::second_level, "l2.size", cache, database_bytes));
     if (cache.ways != memory::full_ways) {
       resources.push_back(more_ways(changer, Part::second_level, "l2.ways", cache));
     }

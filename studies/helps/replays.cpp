@@ -42,6 +42,16 @@ Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
   }
 }
 
+// Bytes of the host's memory for a replay. A machine that cannot be built is refused by its replay.
+std::uint64_t bytes_of(const SharedLog& shared, const MachineConfig& machine) {
+  const MachineConfig timed = without_counting(machine);
+  try {
+    return processors::replay::host_bytes(shared.log, timed);
+  } catch (const sim::UserError&) {
+    return processors::replay::host_bytes(timed);
+  }
+}
+
 }  // namespace
 
 const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& machine) {
@@ -50,13 +60,13 @@ const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& ma
 }
 
 bool has_room(const SharedLog& shared, const MachineConfig& machine) {
-  return processors::replay::host_bytes(without_counting(machine)) <= shared.memory.left();
+  return bytes_of(shared, machine) <= shared.memory.left();
 }
 
 std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines) {
   std::uint64_t largest = 1;
   for (const MachineConfig* const machine : machines) {
-    largest = std::max(largest, processors::replay::host_bytes(without_counting(*machine)));
+    largest = std::max(largest, bytes_of(shared, *machine));
   }
   const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / largest, 1, cores);

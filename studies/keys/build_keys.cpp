@@ -1,8 +1,8 @@
 #include "studies/keys/build_keys.h"
 
-#include <charconv>
 #include <string>
 
+#include "sim/parse_number.h"
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
 
@@ -26,9 +26,8 @@ void read_initial_level(const sim::Config& config, BuildConfig& build) {
     return;
   }
   build.initial = InitialTree::level;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, build.level);
-  if (error != std::errc{} || rest != end || build.level == 0 || build.level > most_levels) {
+  build.level = sim::parse_number<decltype(build.level)>(text).value_or(0);
+  if (build.level == 0 || build.level > most_levels) {
     config.fail("build.initial_level", "must be \"full\", \"rule\" or a level from \"1\" to \"" +
                                            std::to_string(most_levels) + "\", not \"" + sim::shown(text) +
                                            "\"");

@@ -8,7 +8,6 @@ namespace marti::studies::keys {
 
 namespace {
 
-using processors::machine::CacheOrganisation;
 using processors::machine::MachineConfig;
 using processors::machine::SecondLevel;
 
@@ -16,17 +15,9 @@ double kib(std::uint64_t bytes) { return static_cast<double>(bytes) / 1024.0; }
 
 // Bytes of a node's first level.
 std::uint64_t first_level(const MachineConfig& machine) {
-  switch (machine.cache.organisation) {
-    case CacheOrganisation::none:
-      return 0;
-    case CacheOrganisation::unified:
-      return machine.cache.cache.size;
-    case CacheOrganisation::split:
-      break;
-  }
   std::uint64_t bytes = 0;
-  for (const std::uint64_t size : machine.cache.split_sizes) {
-    bytes += size;
+  for (const auto& first : processors::machine::first_level_caches(machine.cache)) {
+    bytes += first.cache.size;
   }
   return bytes;
 }

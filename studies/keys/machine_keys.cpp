@@ -52,8 +52,7 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutCon
     {"layout.pixel", &memory::LayoutConfig::pixel_bytes},
 }};
 
-constexpr std::array<std::string_view, processors::machine::split_caches> split_keys = {
-    "cache.node_size", "cache.list_size", "cache.primitive_size", "cache.shading_size"};
+constexpr auto& split_keys = processors::machine::split_size_keys;
 
 void declare_node(Schema& schema) {
   schema.section("machine", "how many processors work on a frame, and how they share it");

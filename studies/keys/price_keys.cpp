@@ -32,7 +32,7 @@ constexpr std::array<PriceKey, 8> price_keys = {{
      "of a byte of the interconnect's width, in each cluster; of a crossbar, for each bank"},
     {"prices.network_byte", &Prices::network_byte,
      "of a byte of the network's width, for each node, where there is a network"},
-    {"prices.bank", &Prices::bank, "of a bank of shared memory"},
+    {"prices.bank", &Prices::bank, "of a bank of shared memory, or of a DRAM channel"},
 }};
 
 }  // namespace

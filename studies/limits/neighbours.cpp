@@ -2,27 +2,11 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include "sim/error.h"
 #include "studies/keys/setting_value.h"
 
 namespace marti::studies::limits {
-
-namespace {
-
-std::optional<double> number_of(std::span<const sim::Value> values) {
-  if (values.size() != 1) {
-    return std::nullopt;
-  }
-  if (const auto* const whole = std::get_if<std::int64_t>(&values[0])) {
-    return static_cast<double>(*whole);
-  }
-  const auto* const real = std::get_if<double>(&values[0]);
-  return real != nullptr ? std::optional(*real) : std::nullopt;
-}
-
-}  // namespace
 
 Neighbours::Neighbours(std::vector<std::string> axes, std::span<const sim::Config* const> points) {
   for (std::string& key : axes) {
@@ -47,7 +31,7 @@ std::size_t Neighbours::place_of(Axis& axis, const sim::Config& config) const {
   const auto place = static_cast<std::size_t>(found - axis.texts.begin());
   if (found == axis.texts.end()) {
     axis.texts.push_back(std::move(text));
-    axis.numbers.push_back(number_of(values));
+    axis.numbers.push_back(values.size() == 1 ? sim::number_of(values[0]) : std::nullopt);
   }
   return place;
 }

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <optional>
-#include <variant>
 
 #include "studies/helps/change.h"
 
@@ -15,12 +13,7 @@ inline std::optional<double> number_of(const helps::Change& change) {
   if (change.settings.size() != 1 || change.settings[0].values.size() != 1) {
     return std::nullopt;
   }
-  const sim::Value& value = change.settings[0].values[0];
-  if (const auto* const whole = std::get_if<std::int64_t>(&value)) {
-    return static_cast<double>(*whole);
-  }
-  const auto* const real = std::get_if<double>(&value);
-  return real != nullptr ? std::optional(*real) : std::nullopt;
+  return sim::number_of(change.settings[0].values[0]);
 }
 
 /// How far `to` is from `from` towards `beyond`, in logarithms; all are above 0.

@@ -7,95 +7,64 @@ namespace marti::studies::run {
 
 namespace {
 
+// A frame is described, not judged, and has each figure once.
+figures::FigureParts::Description of_frame(std::string_view unit, std::string_view text) {
+  return {unit, text, figures::Merge::one, figures::Better::neither};
+}
+
+void add(figures::FigureParts& parts, std::string_view name, std::string_view text,
+         std::optional<std::uint64_t> count) {
+  parts.add_count(name, of_frame("1", text), count);
+}
+
 void add_scene(figures::FigureParts& parts, const scenes::SceneFacts& scene) {
-  parts.add_count("polygons", {"1", "polygons of the source", figures::Merge::one, figures::Better::neither},
-                  scene.polygons);
-  parts.add_count("triangles",
-                  {"1", "triangles of the database", figures::Merge::one, figures::Better::neither},
-                  scene.triangles);
-  parts.add_count("spheres", {"1", "spheres of the database", figures::Merge::one, figures::Better::neither},
-                  scene.spheres);
-  parts.add_count("cylinders",
-                  {"1", "cylinders of the database", figures::Merge::one, figures::Better::neither},
-                  scene.cylinders);
-  parts.add_count("cones", {"1", "cones of the database", figures::Merge::one, figures::Better::neither},
-                  scene.cones);
-  parts.add_count("vertices", {"1", "vertices as stored", figures::Merge::one, figures::Better::neither},
-                  scene.vertices);
-  parts.add_count("materials", {"1", "materials of the scene", figures::Merge::one, figures::Better::neither},
-                  scene.materials);
-  parts.add_count("textures", {"1", "textures of the scene", figures::Merge::one, figures::Better::neither},
-                  scene.textures);
-  parts.add_count("lights", {"1", "lights of the scene", figures::Merge::one, figures::Better::neither},
-                  scene.lights);
+  add(parts, "polygons", "polygons of the source", scene.polygons);
+  add(parts, "triangles", "triangles of the database", scene.triangles);
+  add(parts, "spheres", "spheres of the database", scene.spheres);
+  add(parts, "cylinders", "cylinders of the database", scene.cylinders);
+  add(parts, "cones", "cones of the database", scene.cones);
+  add(parts, "vertices", "vertices as stored", scene.vertices);
+  add(parts, "materials", "materials of the scene", scene.materials);
+  add(parts, "textures", "textures of the scene", scene.textures);
+  add(parts, "lights", "lights of the scene", scene.lights);
 }
 
 void add_structure(figures::FigureParts& parts, const FunctionalRun& run,
                    const processors::program::WorkLog& log) {
-  parts.add_count("structure_nodes",
-                  {"1", "nodes of the tree; of a grid its header and its cells", figures::Merge::one,
-                   figures::Better::neither},
-                  log.topology.nodes.size());
-  parts.add_count("structure_entries",
-                  {"1", "object references in all leaves", figures::Merge::one, figures::Better::neither},
-                  log.topology.entries.size());
-  parts.add_count("structure_levels",
-                  {"1", "levels of an octree", figures::Merge::one, figures::Better::neither},
-                  run.levels.empty() ? std::nullopt : std::optional<std::uint64_t>(run.levels.size()));
+  add(parts, "structure_nodes", "nodes of the tree; of a grid its header and its cells",
+      log.topology.nodes.size());
+  add(parts, "structure_entries", "object references in all leaves", log.topology.entries.size());
+  add(parts, "structure_levels", "levels of an octree",
+      run.levels.empty() ? std::nullopt : std::optional<std::uint64_t>(run.levels.size()));
 }
 
 void add_rays(figures::FigureParts& parts, const FunctionalRun& run) {
   const processors::program::Frame& frame = run.frame;
-  parts.add_count("width", {"1", "pixels of a row", figures::Merge::one, figures::Better::neither},
-                  frame.image.width);
-  parts.add_count("height", {"1", "rows of the image", figures::Merge::one, figures::Better::neither},
-                  frame.image.height);
+  add(parts, "width", "pixels of a row", frame.image.width);
+  add(parts, "height", "rows of the image", frame.image.height);
   const bool cut = run.voxel_cut.has_value();
   for (std::size_t kind = 0; kind < processors::program::ray_kinds; ++kind) {
     const std::string name(processors::program::ray_kind_names[kind]);
-    parts.add_count(name + "_rays",
-                    {"1", "rays of this kind traced", figures::Merge::one, figures::Better::neither},
-                    frame.rays.traced[kind]);
-    parts.add_count(name + "_hits",
-                    {"1", "of these, hit something; a shadow ray: was blocked", figures::Merge::one,
-                     figures::Better::neither},
-                    frame.rays.hit[kind]);
-    parts.add_count(name + "_voxels",
-                    {"1", "of these, saw a voxel", figures::Merge::one, figures::Better::neither},
-                    cut ? std::optional(frame.rays.voxels[kind]) : std::nullopt);
+    add(parts, name + "_rays", "rays of this kind traced", frame.rays.traced[kind]);
+    add(parts, name + "_hits", "of these, hit something; a shadow ray: was blocked", frame.rays.hit[kind]);
+    add(parts, name + "_voxels", "of these, saw a voxel",
+        cut ? std::optional(frame.rays.voxels[kind]) : std::nullopt);
   }
-  parts.add_count(
-      "voxels",
-      {"1", "averaged materials made for the voxel cut", figures::Merge::one, figures::Better::neither},
+  add(parts, "voxels", "averaged materials made for the voxel cut",
       cut ? std::optional<std::uint64_t>(frame.voxels) : std::nullopt);
 }
 
 void add_log(figures::FigureParts& parts, const processors::program::LogTotals& log) {
-  parts.add_count(
-      "log_bytes",
-      {"byte", "words and pixel offsets of the work log", figures::Merge::one, figures::Better::neither},
-      log.bytes);
-  parts.add_count("log_branches", {"1", "branches visited", figures::Merge::one, figures::Better::neither},
-                  log.branches);
-  parts.add_count("log_leaves", {"1", "leaves visited", figures::Merge::one, figures::Better::neither},
-                  log.leaves);
-  parts.add_count("log_tests", {"1", "primitives tested", figures::Merge::one, figures::Better::neither},
-                  log.tests);
-  parts.add_count("log_lookups", {"1", "mailboxes looked up", figures::Merge::one, figures::Better::neither},
-                  log.lookups);
-  parts.add_count("log_shades", {"1", "points shaded", figures::Merge::one, figures::Better::neither},
-                  log.shades);
-  parts.add_count("log_lights",
-                  {"1", "contributions of lights added", figures::Merge::one, figures::Better::neither},
-                  log.lights);
-  parts.add_count("log_texels", {"1", "texels read", figures::Merge::one, figures::Better::neither},
-                  log.texels);
-  parts.add_count("log_cuts",
-                  {"1", "nodes taken as one voxel", figures::Merge::one, figures::Better::neither}, log.cuts);
-  parts.add_count(
-      "log_passes",
-      {"1", "small nodes too little covered for that", figures::Merge::one, figures::Better::neither},
-      log.passes);
+  parts.add_count("log_bytes", of_frame("byte", "words and pixel offsets of the work log"), log.bytes);
+  add(parts, "log_branches", "branches visited", log.branches);
+  add(parts, "log_leaves", "leaves visited", log.leaves);
+  add(parts, "log_tests", "primitives tested", log.tests);
+  add(parts, "log_lookups", "mailboxes looked up", log.lookups);
+  add(parts, "log_shades", "points shaded", log.shades);
+  add(parts, "log_lights", "contributions of lights added", log.lights);
+  add(parts, "log_texels", "texels read", log.texels);
+  add(parts, "log_cuts", "nodes taken as one voxel", log.cuts);
+  add(parts, "log_passes", "small nodes too little covered for that", log.passes);
 }
 
 void add_row(figures::FigureParts& parts, const FunctionalRun& run, const processors::program::WorkLog& log) {

@@ -1,4 +1,5 @@
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <exception>
@@ -64,7 +65,16 @@ void refuse_maps_beyond_memory(const sim::Config& config, const keys::RecordConf
 
 std::uint64_t packets_of(const processors::program::WorkLog& log,
                          const processors::machine::MachineConfig& machine) {
-  return processors::machine::PacketList(log.width, log.height, machine.packets).size();
+  return processors::machine::packets_of_image(log.width, log.height, machine.packets);
+}
+
+// Refuses what can be told only when the frame is known.
+void refuse_beyond_memory(const RunResult& result) {
+  const std::uint64_t machine = processors::replay::host_bytes(*result.functional.frame.log, result.machine);
+  const std::uint64_t working_set = processors::passes::working_set_bytes(result.machine);
+  result.frame_config.memory.require(std::max(machine, working_set),
+                                     "simulating these nodes, with what they count, takes",
+                                     "simulate fewer nodes (machine.nodes) or count less ([count])");
 }
 
 std::uint64_t bytes_of(const processors::walk::StrippedLog* stripped) {
@@ -76,7 +86,7 @@ sim::MemoryBudget memory_beside(const RunResult& result, const keys::RecordConfi
                                 const processors::walk::StrippedLog* stripped) {
   sim::MemoryBudget budget = result.frame_config.memory;
   budget.take(result.functional.totals.bytes + bytes_of(stripped) +
-                  processors::replay::host_bytes(result.machine) +
+                  processors::replay::host_bytes(*result.functional.frame.log, result.machine) +
                   (record.heat_maps ? map_bytes(result.frame_config) : 0),
               "the work log and the machine take", "make the image smaller");
   return budget;
@@ -123,7 +133,12 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
     result.critical_path = path->path();
   }
   if (result.machine.count.working_set) {
-    result.working_set = processors::passes::working_set(packets_of_nodes);
+    const std::uint64_t a_thread = processors::passes::working_set_bytes(result.machine);
+    const std::uint64_t threads = result.frame_config.memory.left() / std::max<std::uint64_t>(a_thread, 1);
+    result.working_set = processors::passes::working_set(
+        packets_of_nodes,
+        static_cast<unsigned>(std::clamp<std::uint64_t>(
+            threads, 1, static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()))));
     processors::passes::check_working_set(*result.working_set, result.machine, timed);
   }
   return timed;
@@ -140,7 +155,7 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
                     StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
-  const std::uint64_t taken = log_bytes + processors::replay::host_bytes(machine) + map_bytes(frame);
+  const std::uint64_t taken = log_bytes + processors::replay::host_bytes(log, machine) + map_bytes(frame);
   const std::uint64_t left = frame.memory.left();
   if (!pays || taken >= left) {
     return nullptr;
@@ -165,6 +180,7 @@ std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::Reco
   std::shared_ptr<const processors::walk::StrippedLog> stripped;
   result.plan = result.functional.plan;
   const processors::program::WorkLog& log = *result.functional.frame.log;
+  refuse_beyond_memory(result);
   if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::machine::Scheme::image) {
     sim::begin_part(options.meter, "timing the machine", "packets", packets_of(log, result.machine));
     result.timed = watched_replay(record, options, nullptr, result);

@@ -13,6 +13,7 @@
 #include "processors/replay/host_bytes.h"
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/input_files.h"
 #include "studies/host/signals_held.h"
 #include "studies/show/output.h"
 #include "studies/sweep/ranks/rank_sweep.h"
@@ -89,6 +90,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   SweepReport report;
   report.store = options.directory / "results.sqlite";
   report.points = options.directory / "points.csv";
+  sim::refuse_input(report.points);
   // Nobody else may write the store from its check until the tables that follow from it are written.
   std::optional<StoreLock> lock(std::in_place, report.store);
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
@@ -108,7 +110,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   report.traced = left.frames_left();
 
   const auto begin = std::chrono::steady_clock::now();
-  SweepSite site(plan, limit.limit());
+  SweepSite site(plan, limit);
   Progress progress({options.terminal, options.quiet, stderr, all_threads});
   std::optional<RankServer> server;
   if (options.ranks != nullptr) {
@@ -138,10 +140,13 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
       work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
     }
-  } catch (const sim::UserError& error) {
+  } catch (const std::exception& error) {
     progress.end();
     if (is_new) {
       remove_if_empty(store, report.store);
+    }
+    if (dynamic_cast<const sim::UserError*>(&error) == nullptr) {
+      throw;
     }
     throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
                          std::to_string(plan.machines.size()) + " machines are saved)");
@@ -163,7 +168,7 @@ void join_sweep(Ranks& ranks, const SweepOptions& options,
   work_for_rank_0(ranks, options.threads != 0 ? options.threads : threads_of_rank(ranks),
                   [&](const std::string& configuration) -> SweepSite& {
                     joined = read(configuration);
-                    return site.emplace(joined->plan, joined->memory_limit);
+                    return site.emplace(joined->plan, joined->memory);
                   });
 }
 

@@ -1,7 +1,6 @@
 // `marti sweep`: every machine of a configuration's [sweep], timed once, in a store that can be resumed.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "sim/config.h"
+#include "sim/memory_budget.h"
 #include "studies/limits/limit_table.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -51,7 +51,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
 /// What a rank makes of the configuration.
 struct JoinedSweep {
   SweepPlan plan;
-  std::uint64_t memory_limit = 0;
+  sim::MemoryBudget memory;
 };
 
 /// The part of a rank that does not hold the store: works until rank 0 says that all is done.

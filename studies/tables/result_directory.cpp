@@ -1,8 +1,7 @@
 #include "studies/tables/result_directory.h"
 
-#include <charconv>
-
 #include "sim/error.h"
+#include "sim/parse_number.h"
 
 namespace marti::studies::tables {
 
@@ -43,15 +42,13 @@ std::optional<PointName> point_named(const std::string& name) {
     return std::nullopt;
   }
   const fs::path directory = name.substr(0, colon);
-  std::int64_t ordinal = 0;
-  const char* const end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + colon + 1, end, ordinal);
-  if (error != std::errc() || stop != end || !is_there(directory)) {
+  const auto ordinal = sim::parse_number<std::int64_t>(std::string_view(name).substr(colon + 1));
+  if (!ordinal || !is_there(directory)) {
     return std::nullopt;
   }
   std::error_code ignored;
   return PointName{name, fs::is_directory(directory, ignored) ? directory / "results.sqlite" : directory,
-                   ordinal};
+                   *ordinal};
 }
 
 }  // namespace marti::studies::tables

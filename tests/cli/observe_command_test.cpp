@@ -162,6 +162,11 @@ TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
     EXPECT_EQ(counts.writes, nodes[node]["writes"]);
     EXPECT_GT(counts.misses, 0);
   }
+  // The files of a machine of fewer nodes replace them all.
+  ASSERT_EQ(marti("trace " + observed_run + " --set machine.nodes=2 -o " + quoted(directory.path())).status,
+            0);
+  EXPECT_TRUE(fs::exists(directory.path() / "node-00001.din"));
+  EXPECT_FALSE(fs::exists(directory.path() / "node-00002.din"));
 }
 
 TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
@@ -174,6 +179,7 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
   refused(observed_run + " --limit 1KiB", "more than --limit = 1 KiB");
   refused(observed_run + " --limit 5kB", "--limit");
   refused(observed_run + " --nodes 3-16", "no node 16");
+  refused(observed_run + " --nodes \"\"", "at least one node");
   refused(observed_run + " --format xml", "xml");
   refused(observed_run + " --set build.sharing=shared", "build.sharing");
   const Outcome full =

@@ -15,6 +15,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What is read is never replaced by a result: the next run would read something else.
+TEST(RunFiles, NoneReplacesAnInput) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "result.json";
+  const fs::path points = directory.path() / "points.csv";
+  const fs::path scene = directory.path() / "swing.glb";
+  fs::copy_file(fs::path(MARTI_SOURCE) / "configs" / "marti.toml", config);
+  fs::copy_file(config, points);
+  fs::copy_file(fs::path(MARTI_SOURCE) / "configs" / "scenes" / "swing.glb", scene);
+  const std::string out = " -o " + quoted(directory.path());
+  for (const auto& [file, arguments] :
+       {std::pair(config, "run " + quoted(config) + small_teapot + out),
+        std::pair(points, "sweep " + quoted(points) + small_teapot + " --axis machine.nodes=1,2" + out),
+        std::pair(scene, "scene export " + quoted(scene) + " " + quoted(scene))}) {
+    const std::string before = read(file);
+    const Outcome refused = marti(arguments);
+    EXPECT_EQ(refused.status, 2) << arguments;
+    EXPECT_NE(refused.output.find("is read as input"), std::string::npos) << refused.output;
+    EXPECT_EQ(read(file), before) << arguments;
+  }
+}
+
 // Files of an earlier run that this run does not write are removed; other files stay.
 TEST(RunFiles, AreASet) {
   const TemporaryDirectory directory;

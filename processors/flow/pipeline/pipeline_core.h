@@ -24,7 +24,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
 
  protected:
   /// What a node does. After `working` it composes its message; in `blocked` it waits for a slot; in
-  /// `granted` it has a slot and sends at the same instant.
+  /// `granted` another node has freed a slot for it, and the event in which it sends has yet to be handled.
   enum class Phase : std::uint8_t { idle, working, contributing, ending, sending, blocked, granted };
 
   struct alignas(64) Node {

@@ -174,9 +174,11 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
       answer.push_back(fmt::format("{}: {}.", begin, point.limit));
     }
   };
-  answer.push_back(fmt::format("The fastest of {} machines takes {} a frame{} {} {:g}: {}.", compared,
-                               tables::computed_seconds(fastest.figure("end")), speed_text(fastest), unit,
-                               price_of(fastest), place_text(sweep, fastest)));
+  answer.push_back(fmt::format(
+      "{} takes {} a frame{} {} {:g}: {}.",
+      compared == 1 ? "The only machine compared" : fmt::format("The fastest of {} machines", compared),
+      tables::computed_seconds(fastest.figure("end")), speed_text(fastest), unit, price_of(fastest),
+      place_text(sweep, fastest)));
   if (sweep.frames > 1) {
     answer.push_back(fmt::format(
         "The sweep has {} different frames, which are not the same work: only the machines of the frame with "

@@ -22,9 +22,7 @@ constexpr int samples_a_step = 4;
 // The range that a configuration allows for the axis; unlimited if the axis is not a key.
 std::pair<double, double> range_of(const ReportAxis& axis, const sim::Schema& schema) {
   const auto number = [](const std::optional<sim::Value>& value, double otherwise) {
-    const auto* integer = value ? std::get_if<std::int64_t>(&*value) : nullptr;
-    const auto* real = value ? std::get_if<double>(&*value) : nullptr;
-    return integer != nullptr ? static_cast<double>(*integer) : real != nullptr ? *real : otherwise;
+    return value ? sim::number_of(*value).value_or(otherwise) : otherwise;
   };
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::optional<std::size_t> at = schema.find(axis.name);

@@ -155,20 +155,23 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
     return found == nullptr ? std::string("?") : *found;
   };
   std::size_t holding = 0;
+  std::size_t not_measured = 0;
   std::vector<std::string> others;
   for (std::size_t row = 0; row < table.rows().size(); ++row) {
     const std::string verdict = text(row, "verdict");
     if (verdict == "agrees" || verdict == "pass") {
       ++holding;
     } else {
+      not_measured += verdict == "not measured" ? 1 : 0;
       others.push_back(claims ? fmt::format("{}: {} ({}).", text(row, "subject"), text(row, "here"), verdict)
                               : fmt::format("{}: {} ({}).", text(row, "case"), text(row, "figure"), verdict));
     }
   }
-  report.answer.push_back(claims ? fmt::format("{} of {} claims of the paper are reproduced{}", holding,
-                                               table.rows().size(), others.empty() ? "." : "; the others:")
-                                 : fmt::format("{} of {} cases pass{}", holding, table.rows().size(),
-                                               others.empty() ? "." : "; the others:"));
+  const std::string unmeasured =
+      not_measured == 0 ? "" : fmt::format(", {} more are not measured here", not_measured);
+  report.answer.push_back(fmt::format("{} of {} {}{}{}", holding, table.rows().size() - not_measured,
+                                      claims ? "claims of the paper are reproduced" : "cases pass",
+                                      unmeasured, others.empty() ? "." : "; the others:"));
   report.answer.insert(report.answer.end(), others.begin(), others.end());
 }
 

@@ -1,28 +1,27 @@
 #include "studies/run/trace/node_list.h"
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 #include <string>
 
 #include "sim/error.h"
+#include "sim/parse_number.h"
 
 namespace marti::studies::run {
 
 namespace {
 
 std::uint32_t parse_node(std::string_view text, std::string_view part, std::uint32_t nodes) {
-  std::uint32_t node = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), node);
-  if (part.empty() || error != std::errc() || end != part.data() + part.size()) {
+  const auto node = sim::parse_number<std::uint32_t>(part);
+  if (!node) {
     throw sim::UserError("--nodes " + std::string(text) + ": \"" + std::string(part) +
                          "\" is not the number of a node; write for instance 0-3 or 0,2,8-9");
   }
-  if (node >= nodes) {
-    throw sim::UserError("--nodes " + std::string(text) + ": there is no node " + std::to_string(node) +
+  if (*node >= nodes) {
+    throw sim::UserError("--nodes " + std::string(text) + ": there is no node " + std::to_string(*node) +
                          "; the machine has nodes 0 to " + std::to_string(nodes - 1));
   }
-  return node;
+  return *node;
 }
 
 }  // namespace

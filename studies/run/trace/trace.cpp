@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "processors/machine/combinations.h"
 #include "processors/passes/reference_trace.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
+#include "sim/parse_number.h"
 #include "sim/units.h"
 #include "studies/host/signals_held.h"
 #include "studies/keys/machine_keys.h"
@@ -83,6 +88,28 @@ std::string describe(const std::filesystem::path& file, const Count& count) {
                      static_cast<double>(count.bytes) / (1024.0 * 1024.0));
 }
 
+// Removes the files of an earlier trace of a machine with more nodes.
+void remove_beyond(const std::filesystem::path& directory, std::uint32_t nodes) {
+  constexpr std::string_view begin = "node-";
+  constexpr std::string_view end = ".din";
+  std::vector<std::filesystem::path> older;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(directory, error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with(begin) && name.ends_with(end)) {
+      const std::string_view digits =
+          std::string_view(name).substr(begin.size(), name.size() - begin.size() - end.size());
+      if (sim::parse_number<std::uint32_t>(digits).value_or(0) >= nodes) {
+        older.push_back(entry->path());
+      }
+    }
+  }
+  for (const std::filesystem::path& file : older) {
+    std::filesystem::remove(file, error);
+  }
+}
+
 }  // namespace
 
 std::string write_traces(sim::Config& config, const TraceOptions& options,
@@ -122,6 +149,7 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   for (const std::unique_ptr<TextStream>& file : files) {
     file->commit();
   }
+  remove_beyond(directory, machine.all_nodes());
   return text;
 }
 

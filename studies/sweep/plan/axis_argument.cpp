@@ -1,6 +1,5 @@
 #include "studies/sweep/plan/axis_argument.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "sim/error.h"
 #include "sim/key_value.h"
 #include "sim/nearest.h"
+#include "sim/parse_number.h"
 #include "sim/rounded.h"
 #include "sim/shown.h"
 #include "sim/trim.h"
@@ -20,13 +20,6 @@
 namespace marti::studies::sweep {
 
 namespace {
-
-template <class Number>
-std::optional<Number> number_of(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
 
 class ArgumentReader {
  public:
@@ -65,10 +58,10 @@ class ArgumentReader {
   // A number or truth as such, so that a key of another type refuses it as it would in a file.
   [[nodiscard]] sim::DocumentValue document_of(std::string_view text) const {
     if (declared().type != sim::ValueType::text && declared().type != sim::ValueType::choice) {
-      if (const std::optional<std::int64_t> whole = number_of<std::int64_t>(text)) {
+      if (const std::optional<std::int64_t> whole = sim::parse_number<std::int64_t>(text)) {
         return {*whole, 0};
       }
-      if (const std::optional<double> real = number_of<double>(text); real && std::isfinite(*real)) {
+      if (const std::optional<double> real = sim::parse_number<double>(text); real && std::isfinite(*real)) {
         return {*real, 0};
       }
       if (text == "true" || text == "false") {
@@ -137,7 +130,7 @@ class ArgumentReader {
       fail("the range lacks the number after its " + std::string(1, how));
     }
     if (how == '*') {
-      const std::optional<double> factor = number_of<double>(step);
+      const std::optional<double> factor = sim::parse_number<double>(step);
       if (!factor || !(*factor > 1.0) || !std::isfinite(*factor) || !(from > Number(0))) {
         fail("a range by factors begins above 0, and its factor is a number above 1");
       }

@@ -14,22 +14,14 @@ namespace {
 constexpr std::size_t most_steps_shown = 8;
 constexpr std::size_t most_skipped_shown = 3;
 
-std::string join(const std::vector<std::string>& parts, std::string_view between) {
-  std::string joined;
-  for (const std::string& part : parts) {
-    joined += (joined.empty() ? "" : std::string(between)) + part;
-  }
-  return joined;
-}
-
 // The first and the last ones of a long list.
 std::string shorten(const std::vector<std::string>& steps) {
   if (steps.size() <= most_steps_shown) {
-    return join(steps, ", ");
+    return fmt::format("{}", fmt::join(steps, ", "));
   }
   const auto kept = static_cast<std::ptrdiff_t>(most_steps_shown) - 2;
-  return join({steps.begin(), steps.begin() + kept}, ", ") + ", ..., " + steps.back() +
-         fmt::format(" ({} values)", steps.size());
+  return fmt::format("{}, ..., {} ({} values)", fmt::join(steps.begin(), steps.begin() + kept, ", "),
+                     steps.back(), steps.size());
 }
 
 std::string number(std::uint64_t count) { return tables::grouped(static_cast<std::int64_t>(count)); }
@@ -43,7 +35,7 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   };
   for (const SweepDirection& direction : plan.directions) {
     line(&direction == plan.directions.data() ? "axes" : "",
-         join(direction.keys, " and ") + ": " + shorten(direction.steps));
+         fmt::format("{}: {}", fmt::join(direction.keys, " and "), shorten(direction.steps)));
   }
   std::string points = number(plan.points.size());
   if (plan.filtered_out > 0) {

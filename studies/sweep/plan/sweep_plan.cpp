@@ -196,35 +196,39 @@ class Planner {
     });
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!read[i].point.read) {
-        skip(points[i], read[i].point.error);
+        skip(points[i], read[i].point.error, false);
         continue;
       }
       ReadPoint& point = *read[i].point.read;
       const std::uint64_t group = base_group(points[i]);
       if (!bases_.contains(group)) {
         // Only the group's first point reads the base; that point could not be built, so it is read here.
-        enter_base(group, points[i],
-                   read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
+        enter_base(group, read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
       }
-      enter_point(points[i], point, bases_.at(group));
+      if (const Base& base = bases_.at(group); base.machine) {
+        enter_point(points[i], point, *base.machine);
+      } else {
+        skip(points[i], base.error, true);
+      }
     }
   }
 
-  void skip(std::uint64_t point, const std::string& error) {
+  void skip(std::uint64_t point, const std::string& error, bool of_base) {
     if (!skip_invalid_) {
-      throw sim::UserError(error + " (the point " + sim::shown(points_.text(point)) +
+      throw sim::UserError(error + (of_base ? " (the base of the point " : " (the point ") +
+                           sim::shown(points_.text(point)) +
                            "; sweep.skip_invalid = true leaves out such points)");
     }
-    plan_.skipped.push_back({points_.text(point), error});
+    plan_.skipped.push_back({points_.text(point), of_base ? error + " (its base)" : error});
   }
 
-  void enter_base(std::uint64_t group, std::uint64_t point, Outcome base) {
+  void enter_base(std::uint64_t group, Outcome base) {
     if (!base.read) {
-      throw sim::UserError(base.error + " (the machine that the point " + sim::shown(points_.text(point)) +
-                           " is measured against)");
+      bases_.emplace(group, Base{std::nullopt, base.error});
+      return;
     }
     note_use(base.read->config);
-    bases_.emplace(group, found_.enter(*base.read));
+    bases_.emplace(group, Base{found_.enter(*base.read), {}});
   }
 
   void enter_point(std::uint64_t number, ReadPoint& read, std::size_t base) {
@@ -311,7 +315,12 @@ class Planner {
   SweepPoints points_;
   std::vector<bool> used_;         // by any machine
   std::vector<bool> shapes_base_;  // of each axis
-  std::unordered_map<std::uint64_t, std::size_t> bases_;
+  // What the points of a group are measured against: a machine, or why it cannot be built.
+  struct Base {
+    std::optional<std::size_t> machine;
+    std::string error;
+  };
+  std::unordered_map<std::uint64_t, Base> bases_;
   MachineList found_;
   SweepPlan plan_;
 };

@@ -1,9 +1,8 @@
 #include "studies/sweep/ranks/launch.h"
 
-#include <charconv>
 #include <cstdlib>
-#include <string_view>
-#include <system_error>
+
+#include "sim/parse_number.h"
 
 namespace marti::studies::sweep {
 
@@ -12,15 +11,7 @@ namespace {
 // A number in an environment variable; 0 where there is none.
 std::uint32_t number_in(const char* variable) {
   const char* const value = std::getenv(variable);
-  std::uint32_t number = 0;
-  if (value != nullptr) {
-    const std::string_view text(value);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size()) {
-      return 0;
-    }
-  }
-  return number;
+  return value != nullptr ? sim::parse_number<std::uint32_t>(value).value_or(0) : 0;
 }
 
 }  // namespace

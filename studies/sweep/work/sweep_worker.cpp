@@ -3,6 +3,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -71,7 +72,9 @@ processors::replay::MachineResult replay(SweepSite& site, const SweepTask& task,
                                          const processors::machine::MachineConfig& machine) {
   const std::shared_ptr<const processors::walk::StrippedLog> stripped =
       site.strips.get(task.frame, log, machine, task.sharing, task.ways);
-  const MemoryGate::Pass pass(site.machines, processors::replay::host_bytes(machine));
+  const std::uint64_t bytes = processors::replay::host_bytes(*log, machine);
+  site.memory.require(bytes, "a machine with what it counts takes", "lower machine.nodes");
+  const MemoryGate::Pass pass(site.machines, bytes);
   processors::replay::ReplayOptions options;
   options.stripped = stripped.get();
   // Rows count an event for each read, whatever the interconnect is.
@@ -101,6 +104,9 @@ void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
     } catch (const sim::UserError& error) {
       throw sim::UserError(std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) +
                            ")");
+    } catch (const std::bad_alloc&) {
+      throw sim::UserError("the computer ran out of memory (while it timed the machine with " +
+                           sim::shown(name_of(machine)) + ")");
     }
     source.timed(number, row, host::thread_cpu_nanoseconds() - begin);
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sim/memory_budget.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/work/log_cache.h"
 #include "studies/sweep/work/memory_gate.h"
@@ -15,11 +16,12 @@ namespace marti::studies::sweep {
 /// What the workers of one process share.
 struct SweepSite {
   /// Half of the memory is for work logs; stripped logs and machines that are being timed share the rest.
-  SweepSite(const SweepPlan& sweep, std::uint64_t memory_limit)
+  SweepSite(const SweepPlan& sweep, const sim::MemoryBudget& budget)
       : plan(sweep),
-        logs(memory_limit / 2),
-        strips(memory_limit / 4),
-        machines(memory_limit - memory_limit / 2 - memory_limit / 4) {}
+        memory(budget),
+        logs(budget.limit() / 2),
+        strips(budget.limit() / 4),
+        machines(budget.limit() - budget.limit() / 2 - budget.limit() / 4) {}
 
   /// Says that nobody needs that frame's logs any more.
   void drop(std::size_t frame) {
@@ -28,6 +30,7 @@ struct SweepSite {
   }
 
   const SweepPlan& plan;
+  sim::MemoryBudget memory;
   LogCache logs;
   StrippedLogCache strips;
   MemoryGate machines;

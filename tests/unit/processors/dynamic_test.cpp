@@ -263,6 +263,28 @@ TEST(Dynamic, BuildingBeforehandKeepsTheHostWaiting) {
   EXPECT_EQ(result.nodes[1].finish, start_up + step.branch + latency + step.pixel);
 }
 
+TEST(Dynamic, WhatIsBuiltBeforehandWaitsForNoPrefetch) {
+  MachineConfig machine = tiny_machine(1);
+  machine.build.sharing = Sharing::none;
+  machine.cache.organisation = CacheOrganisation::unified;
+  machine.cache.cache.line = 64;
+  // Primitives lie in one bank and are slow to read, what is written lies in others.
+  machine.interconnect.kind = memory::InterconnectKind::crossbar;
+  machine.interconnect.width = 1;
+  machine.banks.count = 64;
+  machine.banks.interleave = 4096;
+  machine.banks.clock = machine.interconnect.clock;
+  WorkLog log = tiny_log(1);
+  log.primitives = 4;  // of which the tree lists the first two, which fill a line
+  const MachineResult without = replay::replay(log, machine);
+  machine.prefetch.next_line = true;
+  machine.prefetch.outstanding = 4;
+  const MachineResult with = replay::replay(log, machine);
+  EXPECT_EQ(with.contexts.counts().issued, 1)
+      << "the line of the other two, which comes after the last write";
+  EXPECT_EQ(with.build.start_up, without.build.start_up);
+}
+
 TEST(Dynamic, PrivateTreesAreBuiltTwiceInMemoryOfTheirOwn) {
   MachineConfig machine = tiny_machine(2);
   machine.build.sharing = Sharing::private_trees;

@@ -57,6 +57,34 @@ TEST(Packets, HilbertNeighboursTouch) {
   }
 }
 
+// The order of an image is that of the curve through the square around it, less what lies outside.
+TEST(Packets, AnImageHasTheOrderOfTheSquareAroundIt) {
+  for (const PacketOrder order : {PacketOrder::hilbert, PacketOrder::morton}) {
+    const PacketList square(32, 32, {1, 1, order});
+    for (std::uint32_t width = 1; width <= 32; ++width) {
+      for (const std::uint32_t height : {1U, 2U, 7U, 31U, 32U}) {
+        if (std::bit_ceil(std::max(width, height)) != 32) {
+          continue;
+        }
+        const PacketList packets(width, height, {1, 1, order});
+        std::uint64_t at = 0;
+        for (std::uint64_t i = 0; i < square.size(); ++i) {
+          const Packet cell = square[i];
+          if (cell.x0 < width && cell.y0 < height) {
+            ASSERT_LT(at, packets.size());
+            ASSERT_EQ(packets[at].x0, cell.x0);
+            ASSERT_EQ(packets[at].y0, cell.y0);
+            ++at;
+          }
+        }
+        EXPECT_EQ(at, packets.size());
+      }
+    }
+    // One row takes about as long as it has packets, not the square of that.
+    EXPECT_EQ(PacketList(1U << 22U, 1, {1, 1, order}).size(), 1U << 22U);
+  }
+}
+
 TEST(Packets, MortonInterleavesTheBits) {
   const PacketList packets(8, 8, {1, 1, PacketOrder::morton});
   EXPECT_EQ(packets[1].x0, 1U);
@@ -67,6 +95,8 @@ TEST(Packets, MortonInterleavesTheBits) {
 
 TEST(Packets, RefusesNothingAndTooMuch) {
   EXPECT_THROW(PacketList(8, 8, {0, 1, PacketOrder::scanline}), sim::UserError);
+  EXPECT_EQ(packets_of_image(8, 8, {0, 1, PacketOrder::scanline}), 0U);
+  EXPECT_EQ(packets_of_image(9, 8, {4, 100, PacketOrder::hilbert}), 3U);
   EXPECT_THROW(PacketList(1U << 20U, 1U << 20U, {1, 1, PacketOrder::scanline}), sim::UserError);
   EXPECT_EQ(PacketList(8, 8, {~0U, ~0U, PacketOrder::morton}).size(), 1U);
   EXPECT_EQ(PacketList(0, 0, {1, 1, PacketOrder::hilbert}).size(), 0U);

@@ -170,6 +170,10 @@ TEST(WorkingSet, RefusesMachinesOfWhichItCannotBeTold) {
     machine.cache.cache.ways = 8192;
     machine.cache.cache.size = std::uint64_t{2} * 8192 * 32;
   });
+  refused([](MachineConfig& machine) {  // 2^25 lines are simulated, but not sixteen ways of so many sets
+    machine.cache.cache.ways = 1;
+    machine.cache.cache.size = std::uint64_t{1} << 30U;
+  });
 }
 
 }  // namespace

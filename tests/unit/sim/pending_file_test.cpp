@@ -84,6 +84,13 @@ TEST(PendingFile, HasARandomNameAndIsThereAtOnce) {
   EXPECT_EQ(names.size(), 20U);
 }
 
+TEST(PendingFile, NamesMayBeAsLongAsTheSystemAllows) {
+  const TemporaryDirectory directory;
+  const fs::path target = directory.path() / (std::string(250, 'a') + ".html");
+  write_file(target, "page");
+  EXPECT_EQ(read_file(target, 100), "page");
+}
+
 // Each file is locked as long as the system's limit on open files allows.
 TEST(PendingFile, ThereMayBeThousands) {
   const TemporaryDirectory directory;

@@ -383,9 +383,8 @@ TEST(SweepPlan, WrongPointsAreNamed) {
            {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\ncache.line = 33\n",
             "s.toml:4: cache.line: must be a power of two, not 33 bytes (the machine of [sweep.compare])"},
            {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\ncache.line = 33\n",
-            "s.toml:4: cache.line: must be a power of two, not 33 bytes (the machine that the point "
-            "machine.nodes = 1 "
-            "is measured against)"},
+            "s.toml:4: cache.line: must be a power of two, not 33 bytes (the base of the point "
+            "machine.nodes = 1; sweep.skip_invalid = true leaves out such points)"},
            {"[sweep.axes]\nscene.source = [\"no.glb\"]\n", "s.toml:2: scene.source: there is no file no.glb"},
        }) {
     const std::string message = user_error_of([&] { (void)plan_of(wrong.text); });
@@ -411,6 +410,17 @@ TEST(SweepPlan, PointsThatCannotBeBuiltMayBeLeftOut) {
           [] { (void)plan_of("[sweep]\nskip_invalid = true\n[sweep.axes]\ncache.line = [\"33 B\"]\n"); }),
       "s.toml:1: sweep: no point of the sweep can be built; the first: s.toml:4: cache.line: must be a power "
       "of two, not 33 bytes");
+}
+
+TEST(SweepPlan, PointsWhoseBaseCannotBeBuiltMayBeLeftOut) {
+  // 128 B are four lines: enough for the point's four ways, not for the base's eight.
+  const SweepPlan plan = plan_of(
+      "[sweep]\nskip_invalid = true\n[sweep.axes]\ncache.size = [\"16 KiB\", \"128 B\"]\n[sweep.base]\n"
+      "cache.ways = 8\n");
+  EXPECT_EQ(plan.points.size(), 1U);
+  ASSERT_EQ(plan.skipped.size(), 1U);
+  EXPECT_EQ(plan.skipped[0].point, "cache.size = \"128 B\"");
+  EXPECT_TRUE(plan.skipped[0].reason.ends_with("(its base)")) << plan.skipped[0].reason;
 }
 
 // Parts of a file in any combination make a plan or one message that names the file.
