@@ -367,7 +367,7 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
       ->required();
   compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
   compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
-  compare->add_flag("--all", arguments.options.all, "everything, what is equal too");
+  compare->add_flag("--all", arguments.options.all, "all differences, and what is equal");
   compare->add_option("-o,--output", arguments.page, "also one HTML page: the verdict, charts, tables")
       ->type_name("FILE.html")
       ->check(no_empty_file);
@@ -516,7 +516,7 @@ int parse_and_run(int argc, char** argv) {
       ->check(no_empty_directory);
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->add_option("--within", run_arguments.within,
-                  "an estimate is enough whose measured error is at most so much, as \"2 %\"")
+                  "accept an estimate whose error is at most this, as \"2 %\"")
       ->type_name("PERCENTAGE")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();

@@ -148,9 +148,10 @@ ComparisonPage page_of(const ResultAndSweep& found) {
                       found.sweep_is_a() ? found.end : point.end});
   }
   ComparisonPart points{"points", "Points", {}, {}, {}};
-  points.sentences.push_back(fmt::format("{} takes {}: {}.", found.result_letter(),
-                                         tables::seconds(found.end),
-                                         values_text(found.varied, found.of_result(), false)));
+  const std::string values =
+      found.varied.empty() ? "" : ": " + values_text(found.varied, found.of_result(), false);
+  points.sentences.push_back(
+      fmt::format("{} takes {}{}.", found.result_letter(), tables::seconds(found.end), values));
   if (found.same_frame) {
     points.charts.push_back(ratio_chart(ratios));
   }

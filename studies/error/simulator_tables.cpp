@@ -22,6 +22,11 @@ tables::Cell optional_cell(const std::optional<double>& value) {
   return value ? tables::Cell(*value) : tables::Cell();
 }
 
+// Without a value where no case was measured.
+tables::Cell measured(const estimate::ErrorSummary& summary, double estimate::ErrorSummary::*figure) {
+  return summary.cases > 0 ? tables::Cell(summary.*figure) : tables::Cell();
+}
+
 // What is counted of the work of all answers.
 struct CountedWork {
   std::uint64_t events = 0;
@@ -76,11 +81,14 @@ tables::Table method_table(const SimulatorStudy& study, std::span<const MethodEr
       continue;
     }
     const auto& figures = errors[m].figures;
-    const auto size_of = [&](estimate::Figure figure) { return figures[at(figure)].summary.mean_abs; };
+    const auto size_of = [&](estimate::Figure figure) {
+      return measured(figures[at(figure)].summary, &estimate::ErrorSummary::mean_abs);
+    };
     const FigureErrors& end = figures[at(estimate::Figure::end)];
     table.add_row(
-        {methods[m].name(), methods[m].knob(), tables::count_cell(end.summary.cases), end.summary.mean,
-         end.summary.mean_abs, end.summary.worst,
+        {methods[m].name(), methods[m].knob(), tables::count_cell(end.summary.cases),
+         measured(end.summary, &estimate::ErrorSummary::mean), size_of(estimate::Figure::end),
+         measured(end.summary, &estimate::ErrorSummary::worst),
          end.summary.worst == 0.0 ? tables::Cell() : tables::Cell(study.cases[end.summary.worst_case].name),
          size_of(estimate::Figure::speed_up), size_of(estimate::Figure::misses),
          size_of(estimate::Figure::use), size_of(estimate::Figure::wait), errors[m].least_tau,
@@ -120,9 +128,9 @@ tables::Table figure_table(const SimulatorStudy& study, std::span<const MethodEr
                                        methods[m].knob(),
                                        std::string(estimate::figure_names[figure]),
                                        tables::count_cell(found.summary.cases),
-                                       found.summary.mean,
-                                       found.summary.mean_abs,
-                                       found.summary.worst,
+                                       measured(found.summary, &estimate::ErrorSummary::mean),
+                                       measured(found.summary, &estimate::ErrorSummary::mean_abs),
+                                       measured(found.summary, &estimate::ErrorSummary::worst),
                                        found.summary.worst == 0.0
                                            ? tables::Cell()
                                            : tables::Cell(study.cases[found.summary.worst_case].name),
@@ -226,7 +234,7 @@ tables::Table time_table(const SimulatorStudy& study, std::span<const MethodErro
     std::vector<figures::Offer> points;
     std::vector<std::size_t> of_point;
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      if (errors[m].any) {
+      if (errors[m].any && errors[m].figures[figure].summary.cases > 0) {
         points.push_back({median_of(study, m), errors[m].figures[figure].summary.mean_abs});
         of_point.push_back(m);
       }
@@ -269,7 +277,8 @@ tables::Table fastest_table(const SimulatorStudy& study, std::span<const MethodE
       const auto fastest = [&](const auto& size_of) {
         std::size_t best = 0;
         for (std::size_t m = 0; m < methods.size(); ++m) {
-          if (errors[m].any && size_of(errors[m].figures[at(figure)].summary) <= limit &&
+          const estimate::ErrorSummary& summary = errors[m].figures[at(figure)].summary;
+          if (errors[m].any && summary.cases > 0 && size_of(summary) <= limit &&
               median_of(study, m) < median_of(study, best)) {
             best = m;
           }

@@ -49,7 +49,8 @@ const StageLoad& FlowFigures::slowest() const {
 
 namespace {
 
-// The share of the frame in which contributions occupy the link into the host, if the host has its own link.
+// The time, in ps, for which contributions occupy the link into the host; 0 if the host has no link of its
+// own.
 double host_link(const MachineConfig& machine, const MachineResult& result) {
   const memory::NetworkConfig& network = machine.network;
   if (network.kind == memory::NetworkKind::ideal || network.kind == memory::NetworkKind::bus) {

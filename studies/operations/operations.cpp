@@ -50,7 +50,7 @@ constexpr std::array<CountedWalk, 11> plans{{
 }  // namespace
 
 OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
-  const keys::FrameConfig frame = keys::read_frame(config);
+  const keys::FrameConfig frame = keys::read_one_frame(config);
   static_cast<void>(keys::read_machine(config));
   config.refuse_unused();
   const scenes::Scene scene = run::open_frame(frame);

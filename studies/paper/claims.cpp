@@ -37,14 +37,14 @@ tables::Claim polygons(std::span<const SceneTrees> scenes, std::string_view name
   return claim;
 }
 
-/// Share of what lies on levels 8 and deeper.
+/// Share of what lies on level `first` and deeper.
 template <class Count>
-double deep_share(std::size_t levels, const Count& count) {
+double deep_share(std::size_t levels, std::size_t first, const Count& count) {
   std::uint64_t deep = 0;
   std::uint64_t all = 0;
   for (std::size_t level = 1; level <= levels; ++level) {
     all += count(level);
-    deep += level >= 8 ? count(level) : 0;
+    deep += level >= first ? count(level) : 0;
   }
   return all == 0 ? 0.0 : static_cast<double>(deep) / static_cast<double>(all);
 }
@@ -58,7 +58,7 @@ tables::Claim deep_nodes(std::span<const SceneTrees> scenes) {
                       tables::Verdict::not_measured};
   if (const SceneTrees* scene = find(scenes, pot)) {
     const std::vector<LevelCount>& levels = scene->octree.levels;
-    const double share = deep_share(levels.size(), [&](std::size_t l) { return levels[l - 1].nodes(); });
+    const double share = deep_share(levels.size(), 8, [&](std::size_t l) { return levels[l - 1].nodes(); });
     claim.here = fmt::format("{:.2f} %; 9 objects a leaf were fitted to the 42 %", 100.0 * share);
     claim.verdict = tables::verdict_of(std::abs(share - 0.42) <= 0.005);
   }
@@ -129,9 +129,9 @@ tables::Claim deep_accesses(const TracedRun* run) {
                       tables::Verdict::not_measured};
   if (run != nullptr) {
     const std::size_t levels = run->visits.per_level.size();
-    const double share = deep_share(levels, [&](std::size_t l) { return accesses(*run, l); });
-    const double deeper =
-        deep_share(levels, [&](std::size_t l) { return l == 8 ? std::uint64_t{0} : accesses(*run, l); });
+    const auto of_level = [&](std::size_t level) { return accesses(*run, level); };
+    const double share = deep_share(levels, 8, of_level);
+    const double deeper = deep_share(levels, 9, of_level);
     claim.here = fmt::format("{:.2f} %; levels 9 to 12 {:.2f} %", 100.0 * share, 100.0 * deeper);
     claim.verdict = tables::verdict_of(share < 0.01);
   }
@@ -274,7 +274,7 @@ tables::Claim saving(std::span<const RunOutcomes> runs, std::string_view what, d
 }
 
 double longer(sim::Ticks time, sim::Ticks whole) {
-  return -saved(static_cast<std::uint64_t>(time), static_cast<std::uint64_t>(whole));
+  return 0.0 - saved(static_cast<std::uint64_t>(time), static_cast<std::uint64_t>(whole));  // no -0
 }
 
 /// No frame takes more than 1 % longer, the building included.
@@ -304,18 +304,19 @@ tables::Claim alike_beyond(std::span<const RunOutcomes> runs) {
                       tables::Verdict::not_measured};
   bool always = true;
   for (const RunOutcomes& run : runs) {
-    double most = -1.0;
+    std::optional<double> most;
     for (const LevelOutcome& level : run.levels) {
       if (level.initial.level > 8 && !level.initial.whole) {
-        most = std::max(most, longer(level.render, run.whole().render));
+        const double more = longer(level.render, run.whole().render);
+        most = std::max(most.value_or(more), more);
       }
     }
-    if (most < 0.0) {
+    if (!most) {
       continue;
     }
-    always = always && most <= 0.01;
+    always = always && *most <= 0.01;
     claim.here += (claim.here.empty() ? "" : "; ") +
-                  fmt::format("{}: at most {:+.2f} %", name_of(run.run), 100.0 * most);
+                  fmt::format("{}: at most {:+.2f} %", name_of(run.run), 100.0 * *most);
   }
   if (!claim.here.empty()) {
     claim.verdict = tables::verdict_of(always);

@@ -59,6 +59,12 @@ tables::Claim naive(std::span<const ScalingPoint> points) {
   return claim;
 }
 
+// "12", or "more than 64" where that many do not suffice.
+std::string nodes_text(const std::optional<double>& nodes, std::span<const ScalingPoint> machine,
+                       int digits) {
+  return nodes ? fmt::format("{:.{}f}", *nodes, digits) : fmt::format("more than {}", machine.back().nodes);
+}
+
 tables::Claim cached(std::span<const ScalingPoint> points) {
   tables::Claim claim{
       "packets with private caches", "a much larger number of processors can share the memory", "", {}};
@@ -66,16 +72,20 @@ tables::Claim cached(std::span<const ScalingPoint> points) {
   const std::vector<ScalingPoint> without = find(Kind::naive, points);
   const std::vector<ScalingPoint> with = find(Kind::cached, points);
   if (!without.empty() && !with.empty()) {
-    const double few = half_efficiency_nodes(without);
-    const double many = half_efficiency_nodes(with);
-    claim.here =
-        fmt::format("half the efficiency is left at {:.0f} nodes, without caches at {:.1f}", many, few);
-    claim.verdict = tables::verdict_of(many >= 4.0 * few);
+    const std::optional<double> few = half_efficiency_nodes(without);
+    const std::optional<double> many = half_efficiency_nodes(with);
+    claim.here = fmt::format("half the efficiency is left at {} nodes, without caches at {}",
+                             nodes_text(many, with, 0), nodes_text(few, without, 1));
+    // Where the measured machines have too few nodes to tell, nothing is said.
+    if (few && (many || with.back().nodes >= 4.0 * *few)) {
+      claim.verdict = tables::verdict_of(!many || *many >= 4.0 * *few);
+    }
   }
   return claim;
 }
 
 tables::Claim space(std::span<const ScalingPoint> points) {
+  constexpr double most_nodes = 40.0;  // "ten or twenty", generously
   tables::Claim claim{"space parallelism", "efficiency falls beyond ten or twenty processors", "", {}};
   claim.verdict = tables::Verdict::not_measured;
   if (const std::vector<ScalingPoint> machine = find(Kind::space, points); !machine.empty()) {
@@ -84,10 +94,12 @@ tables::Claim space(std::span<const ScalingPoint> points) {
       figures += fmt::format("{}{} at {}", figures.empty() ? "" : ", ",
                              fmt::format("{:.2f}", efficiency(point)), point.nodes);
     }
-    const double half = half_efficiency_nodes(machine);
-    claim.here = fmt::format("efficiency {} nodes; half of it is left at {:.0f}", figures, half);
-    claim.verdict =
-        tables::verdict_of(half <= 40.0 && efficiency(machine.back()) < 0.5 * efficiency(machine.front()));
+    const std::optional<double> half = half_efficiency_nodes(machine);
+    claim.here =
+        fmt::format("efficiency {} nodes; half of it is left at {}", figures, nodes_text(half, machine, 0));
+    if (half || machine.back().nodes >= most_nodes) {
+      claim.verdict = tables::verdict_of(half && *half <= most_nodes);
+    }
   }
   return claim;
 }
@@ -132,7 +144,7 @@ tables::Claim cells(std::span<const CellPoint> points) {
 
 }  // namespace
 
-double half_efficiency_nodes(std::span<const ScalingPoint> machine) {
+std::optional<double> half_efficiency_nodes(std::span<const ScalingPoint> machine) {
   const double half = 0.5 * efficiency(machine.front());
   for (std::size_t i = 1; i < machine.size(); ++i) {
     const double before = efficiency(machine[i - 1]);
@@ -143,7 +155,7 @@ double half_efficiency_nodes(std::span<const ScalingPoint> machine) {
       return std::exp2(from + (to - from) * (before - half) / (before - after));
     }
   }
-  return machine.back().nodes;
+  return std::nullopt;
 }
 
 std::vector<tables::Claim> check_arguments(std::span<const ScalingPoint> points,

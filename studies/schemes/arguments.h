@@ -2,6 +2,7 @@
 // section 3; the space-parallel one after Birtwistle, Cleary, Wyvill, Vatti 1986.)
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,8 @@
 namespace marti::studies::schemes {
 
 /// The largest number of nodes with at least half the efficiency that the machine has with its fewest nodes,
-/// between the measured ones by a straight line in log(nodes); the last one when it never falls so far.
-[[nodiscard]] double half_efficiency_nodes(std::span<const ScalingPoint> machine);
+/// between the measured ones by a straight line in log(nodes); std::nullopt when it never falls so far.
+[[nodiscard]] std::optional<double> half_efficiency_nodes(std::span<const ScalingPoint> machine);
 
 /// Statements whose machines were not timed have the verdict not_measured.
 [[nodiscard]] std::vector<tables::Claim> check_arguments(std::span<const ScalingPoint> points,

@@ -1,6 +1,8 @@
 #include "studies/schemes/schemes_keys.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "accel/structure.h"
@@ -143,10 +145,17 @@ SchemesConfig read_schemes(sim::Config& config) {
   if (!schemes.cell_levels.empty() && schemes.frame.structure != "octree") {
     config.fail("structure.kind", "the study compares the cells of octrees; set schemes.cell_levels = []");
   }
+  std::set<std::string> names;  // by which tables and charts tell machines apart
   for (const std::string& name : config.texts("schemes.machines")) {
     const std::filesystem::path& file = schemes.machines.emplace_back(beside(config, name));
     const NamedMachine machine =
         named_by(config, "schemes.machines", [&] { return read_machine_file(file, schemes.frame); });
+    if (!names.insert(machine.name).second) {
+      config.fail("schemes.machines",
+                  "two machines would be called " + machine.name +
+                      ": the letters and digits of the files' names must differ, not only "
+                      "their folders");
+    }
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
     const std::string excess = schemes.frame.memory.excess(processors::replay::host_bytes(
         named_by(config, "schemes.nodes", [&] {

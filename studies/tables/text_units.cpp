@@ -13,6 +13,9 @@ namespace {
 
 constexpr sim::Ticks ticks_per_nanosecond = sim::ticks_per_second / 1'000'000'000;
 
+// A figure from here on is shown in the larger unit: in the smaller one it would be rounded to 1000.000.
+constexpr double least_whole = 0.9999995;
+
 }  // namespace
 
 std::string seconds(sim::Ticks ticks) {
@@ -23,10 +26,10 @@ std::string seconds(sim::Ticks ticks) {
     return fmt::format("{} ps", ticks);
   }
   const double s = static_cast<double>(ticks) / static_cast<double>(sim::ticks_per_second);
-  if (s >= 1.0) {
+  if (s >= least_whole) {
     return fmt::format("{:.3f} s", s);
   }
-  if (s >= 1e-3) {
+  if (s >= least_whole * 1e-3) {
     return fmt::format("{:.3f} ms", s * 1e3);
   }
   return fmt::format("{:.3f} us", s * 1e6);
@@ -64,13 +67,13 @@ std::string change_percent(double share) {
 std::string times(double ratio) { return fmt::format("{:.2f}", ratio); }
 
 std::string joules(double j) {
-  if (j >= 1.0) {
+  if (j >= least_whole) {
     return fmt::format("{:.3f} J", j);
   }
-  if (j >= 1e-3) {
+  if (j >= least_whole * 1e-3) {
     return fmt::format("{:.3f} mJ", j * 1e3);
   }
-  return j >= 1e-6 ? fmt::format("{:.3f} uJ", j * 1e6) : fmt::format("{:.3f} nJ", j * 1e9);
+  return j >= least_whole * 1e-6 ? fmt::format("{:.3f} uJ", j * 1e6) : fmt::format("{:.3f} nJ", j * 1e9);
 }
 
 std::string counted(std::uint64_t count, std::string_view what) {
@@ -78,7 +81,8 @@ std::string counted(std::uint64_t count, std::string_view what) {
 }
 
 std::string bytes(double count) {
-  if (count >= 1024.0 * 1024.0) {
+  constexpr double least_mebibyte = 1023.95 * 1024.0;  // what is less is not rounded to 1024.0 KiB
+  if (count >= least_mebibyte) {
     return fmt::format("{:.1f} MiB", count / (1024.0 * 1024.0));
   }
   return count >= 1024.0 ? fmt::format("{:.1f} KiB", count / 1024.0) : fmt::format("{:.0f} B", count);

@@ -18,10 +18,11 @@ constexpr double longest = 0x1p62;     // of times, ps
 constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
 constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
-// Where most of the lost speed-up went.
+// Where the largest part of the lost speed-up went. A part may be negative: a gain over one node.
 std::string largest_loss(const tables::RunJson& run) {
   std::pair<std::string, double> largest = {"", 0.0};
   double all = 0.0;
+  double gained = 0.0;
   for (const std::string_view loss : figures::loss_names) {
     const std::string name(loss);
     const std::optional<double> value =
@@ -30,6 +31,7 @@ std::string largest_loss(const tables::RunJson& run) {
       return {};  // a store of an older format has not all of them
     }
     all += *value;
+    gained += std::max(0.0, -*value);
     if (*value > largest.second) {
       largest = {name, *value};
     }
@@ -37,8 +39,10 @@ std::string largest_loss(const tables::RunJson& run) {
   if (largest.first.empty() || all <= 0.0) {
     return {};
   }
-  return fmt::format("As much as {:.2f} nodes could do is lost, most of it ({:.2f}) to {}.", all,
-                     largest.second, words(largest.first));
+  constexpr double told = 0.005;  // what is shown as 0.00 is not told
+  return fmt::format("As much as {:.2f} nodes could do is lost, the largest part ({:.2f}) to {}{}.", all,
+                     largest.second, words(largest.first),
+                     gained < told ? "" : fmt::format("; {:.2f} are gained elsewhere", gained));
 }
 
 std::string bound_sentence(const tables::RunJson& run) {

@@ -113,9 +113,8 @@ std::string line_key(const ReportPoint& point, std::size_t axis) {
 
 std::string error_note(const AxisModel* model) {
   if (model == nullptr) {
-    return "Exact points only: the model needs three points on a line to measure its error, and one that is "
-           "not too "
-           "large.";
+    return "Only simulated points are shown. A curve needs three points that differ in this axis alone, a "
+           "model whose error is not too large, and a sweep that is not too large for a page.";
   }
   const auto said = [&](Zone zone, const std::string& where) {
     const ModelError& error = model->end[static_cast<std::size_t>(zone)];
@@ -199,10 +198,11 @@ std::vector<AxisModel> model_sweep(const ReportPoints& sweep, std::size_t most_s
       continue;
     }
     model.x = samples_of(axis, schema);
-    samples += model.x.size() * fitted.size();
-    if (samples > most_samples) {
-      break;
+    const std::size_t more = model.x.size() * fitted.size();
+    if (samples + more > most_samples) {
+      continue;
     }
+    samples += more;
     for (const auto& [key, line] : fitted) {
       model.curves.emplace(key, curve_of(line, axis, model));
     }

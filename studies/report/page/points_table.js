@@ -22,7 +22,7 @@ marti.table = (explorer, { choose, changed }) => {
 
   function figureColumn({ name, title, unit, meaning, percent }) {
     const values = explorer.columns[name];
-    const number = (i) => (values[i] === null ? null : values[i] * (percent ? 100 : 1));
+    const number = (i) => (values[i] === null ? null : percent ? Number((values[i] * 100).toPrecision(15)) : values[i]);
     const shown = percent ? "%" : unit;
     const text = (i) => (values[i] === null ? "" : marti.number(number(i), {}, 6));
     return { name, title, meaning, unit: shown === "1" ? "" : shown, number, key: number, text };

@@ -140,8 +140,11 @@ void check_places(const std::filesystem::path& store, const ReportPoints& sweep)
       const ReportAxis& axis = sweep.axes[i];
       const std::size_t place = point.place[i];
       if (axis.numeric && place > 0 && !(axis.number(place) > axis.number(place - 1))) {
-        refuse(store, point.ordinal,
-               fmt::format("two values of axis {} are the same number, {}", axis.name, axis.texts[place]));
+        throw sim::UserError(
+            fmt::format("{}: point {}: axis {} has two values that are the same number with the digits that "
+                        "a page can show, "
+                        "{}; leave one of them out",
+                        store.string(), point.ordinal, axis.name, axis.texts[place]));
       }
     }
   }

@@ -163,7 +163,8 @@ TEST_F(Explored, AnAnswerForNobodyIsGivenUp) {
 
 // A replay that has begun ends when somebody moves on, and the next answer is as exact as any.
 TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
-  const Session session(file_, {"image.width=96", "image.height=96", "packets.width=1", "packets.height=1"});
+  const Session session(file_,
+                        {"image.width=256", "image.height=256", "packets.width=1", "packets.height=1"});
   const Settings settings = {{"machine.nodes", "5"}, {"cache.size", "128 B"}};
   for (const char* const part : {"taking known references out", "timing the machine and one node"}) {
     // On a busy computer the thread that moves may get no time until the part is over: then once more.
@@ -186,8 +187,8 @@ TEST_F(Explored, AReplayThatHasBegunIsGivenUp) {
     }
     EXPECT_TRUE(was_given_up) << part;
   }
-  std::vector<std::string> all = {"image.width=96",   "image.height=96", "packets.width=1",
-                                  "packets.height=1", "machine.nodes=5", "cache.size=128 B"};
+  std::vector<std::string> all = {"image.width=256",  "image.height=256", "packets.width=1",
+                                  "packets.height=1", "machine.nodes=5",  "cache.size=128 B"};
   sim::Schema schema = run_schema();
   declare_price_keys(schema);
   sim::Config config = sim::Config::from_file(schema, file_, all);

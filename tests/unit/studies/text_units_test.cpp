@@ -17,7 +17,8 @@ TEST(TextUnits, TimesHaveThreeDecimalsInTheLargestUnit) {
   EXPECT_EQ(seconds(1), "1 ps");
   EXPECT_EQ(seconds(999), "999 ps");
   EXPECT_EQ(seconds(1000), "0.001 us");
-  EXPECT_EQ(seconds(999'999'999), "1000.000 us");
+  EXPECT_EQ(seconds(999'999'499), "999.999 us");
+  EXPECT_EQ(seconds(999'999'999), "1.000 ms") << "and not 1000.000 us";
   EXPECT_EQ(seconds(1'000'000'000), "1.000 ms");
   EXPECT_EQ(seconds(40'858'349'694), "40.858 ms");
   EXPECT_EQ(seconds(1'500'000'000'000), "1.500 s");
