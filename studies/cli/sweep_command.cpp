@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "sim/error.h"
@@ -58,6 +60,18 @@ void join(sweep::Ranks& ranks, const SweepArguments& arguments) {
     sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
     return sweep::JoinedSweep{std::move(plan), memory_of(config, &ranks)};
   });
+}
+
+// A machine is not better for a frame of less work.
+std::string note_of_frames(const sweep::SweepPlan& plan) {
+  std::set<std::size_t> frames;
+  for (const sweep::SweepPoint& point : plan.points) {
+    frames.insert(plan.machines[point.machine].frame);
+  }
+  return frames.size() < 2
+             ? ""
+             : "note: the points have " + std::to_string(frames.size()) +
+                   " different frames, which are not equal work; sweep.filter leaves one of them\n";
 }
 
 }  // namespace
@@ -122,6 +136,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {
+    text += note_of_frames(plan);
     text += "\n" + sweep::best_points(*report.reader, arguments.best, arguments.budget).text;
   }
   print(text);

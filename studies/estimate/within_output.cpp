@@ -59,7 +59,11 @@ std::string time_bar(const Estimate& estimate, Figure figure) {
 
 std::string number_bar(const Estimate& estimate, Figure figure, int digits) {
   return bar(
-      estimate, figure, [digits](double number) { return fmt::format("{:.{}f}", number, digits); },
+      estimate, figure,
+      [digits](double number) {
+        return digits == 0 ? tables::grouped(std::llround(std::min(number, 0x1p62)))
+                           : fmt::format("{:.{}f}", number, digits);
+      },
       "any number");
 }
 

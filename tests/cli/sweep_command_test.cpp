@@ -192,6 +192,7 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   const Outcome best = sweep(config, out, "--best speed_up --budget 6");
   ASSERT_EQ(best.status, 0) << best.output;
   EXPECT_TRUE(says(best, "best speed_up within 6: ")) << best.output;
+  EXPECT_TRUE(says(best, "note: the points have 2 different frames")) << best.output;
   const json front = json::parse(sweep(config, out, "--best end --json").output);
   const json points = json::parse(sweep(config, out, "--json").output);
   double least = 0.0;
@@ -225,6 +226,10 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?")) << wrong.output;
   EXPECT_FALSE(fs::exists(place("none"))) << "said before anything is done";
+  const Outcome one_frame =
+      sweep(config, place("one"), "--set 'sweep.filter=image.max_depth = 1' --best end");
+  EXPECT_TRUE(says(one_frame, "best end: ")) << one_frame.output;
+  EXPECT_FALSE(says(one_frame, "different frames")) << one_frame.output;
   EXPECT_EQ(sweep(config, out, "--budget 3").status, 2) << "without --best";
   EXPECT_EQ(sweep(config, out, "--best end --budget=-1").status, 2);
   EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);

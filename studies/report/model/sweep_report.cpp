@@ -46,7 +46,7 @@ std::vector<SliceChart> charts_over_axis() {
   }
   return {{"efficiency",
            "Efficiency",
-           "Speed-up by the number of nodes; 100 % is the dashed line.",
+           "Speed-up, divided by how many times the base's nodes a machine has; 100 % is the dashed line.",
            {"efficiency"}},
           {"cycles", "Where the cycles go",
            "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
