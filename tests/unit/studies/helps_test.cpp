@@ -234,6 +234,34 @@ TEST(WhatHelps, ReplaysWhatIsBusiestWhereItCanReplayLittle) {
   EXPECT_GT(advised, 20U);
 }
 
+// Where one step can be replayed: another bank where there are few, else a faster clock.
+TEST(WhatHelps, OfBusyBanksTheLargerStepIsTriedFirst) {
+  test::Random random(1);
+  const processors::program::WorkLog log = test::random_log(random, 24, 24);
+  for (const auto& [banks, step] : {std::pair(1, "memory.banks"), std::pair(8, "memory.clock")}) {
+    MachineConfig wanted;
+    wanted.nodes = 128;
+    wanted.packets.width = wanted.packets.height = 1;
+    wanted.cache.organisation = processors::machine::CacheOrganisation::none;
+    wanted.interconnect.kind = memory::InterconnectKind::crossbar;
+    wanted.interconnect.width = 64;
+    wanted.banks.count = static_cast<std::uint32_t>(banks);
+    sim::Config config = test::configuration_of(test::assignments_of(wanted));
+    const MachineConfig machine = read_machine(config);
+    const MachineResult result = processors::replay::replay(log, machine);
+    const WhatHelps some = what_helps(config, std::nullopt, machine, result, SharedLog{log, nullptr, {}, {}},
+                                      replay_work(result, nullptr));
+    std::vector<std::string> replayed;
+    for (const Help& help : some.helps) {
+      // Without a replay it is known of some that they save nothing.
+      if (help.step && help.step->end && help.step->most_saved >= worth_naming) {
+        replayed.push_back(help.name);
+      }
+    }
+    EXPECT_EQ(replayed, std::vector<std::string>{step}) << banks << " banks";
+  }
+}
+
 TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
   test::Random random(5);
   const test::TimedCase made = test::image_case(random);
