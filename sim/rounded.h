@@ -9,7 +9,7 @@
 namespace marti::sim {
 
 /// To so many significant digits (1 to 17): 3.3 + 3.3 + 3.3 is 9.899999999999999 in binary numbers, with 14
-/// digits 9.9. What is not finite stays as it is.
+/// digits 9.9. Infinities and NaN stay.
 [[nodiscard]] inline double rounded(double value, int digits) {
   if (!std::isfinite(value)) {
     return value;

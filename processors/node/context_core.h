@@ -457,8 +457,8 @@ class ContextCore : public PacketNodes<Derived, Cursor> {
  protected:
   sim::LargeVector<Core> cores_;
   sim::LargeVector<Context> contexts_;  // node by node
-  // The last transaction of each port, node by node; done is `never` while its end is not known.
   sim::Ticks last_arrival_ = 0;
+  // The last transaction of each port, node by node; done is `never` while its end is not known.
   sim::LargeVector<memory::Service> services_;
 };
 

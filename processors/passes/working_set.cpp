@@ -29,6 +29,11 @@ std::vector<memory::CacheShape> shapes_of(const machine::NodeCacheConfig& config
 
 std::uint32_t ways_counted(const memory::CacheShape& shape) { return std::max(shape.ways, counted_ways); }
 
+// The lines of the cache whose ways are counted; a cache of one set needs none.
+std::uint64_t lines_counted(const memory::CacheShape& shape) {
+  return shape.sets > 1 ? std::uint64_t{shape.sets} * ways_counted(shape) : 0;
+}
+
 // The passes over the references to one cache.
 class CachePass {
  public:
@@ -157,7 +162,7 @@ void check_working_set(const machine::MachineConfig& config) {
                           "the working set is told for caches of one set, or of sets of at most " +
                               std::to_string(most_counted_ways) + " ways, not " + std::to_string(shape.ways));
     }
-    if (shape.sets > 1 && std::uint64_t{shape.sets} * ways_counted(shape) > memory::most_lines) {
+    if (lines_counted(shape) > memory::most_lines) {
       throw sim::KeyError("count.working_set", "a set is told of with at least " +
                                                    std::to_string(counted_ways) +
                                                    " ways, and so the cache's " + std::to_string(shape.sets) +
@@ -169,7 +174,7 @@ void check_working_set(const machine::MachineConfig& config) {
 std::uint64_t working_set_bytes(const machine::MachineConfig& config) {
   std::uint64_t bytes = 0;
   for (const memory::CacheShape& shape : shapes_of(config.cache)) {
-    bytes += shape.sets > 1 ? sizeof(std::uint32_t) * shape.sets * ways_counted(shape) : 0;
+    bytes += sizeof(std::uint32_t) * lines_counted(shape);
   }
   return config.count.working_set ? bytes : 0;
 }

@@ -11,8 +11,9 @@ namespace marti::processors::replay {
 /// Host bytes that a replay of the machine takes for its nodes and their tags, approximately.
 [[nodiscard]] std::uint64_t host_bytes(const machine::MachineConfig& config);
 
-/// The same with what depends on the frame: the order of packets, what [count] keeps of each line of memory,
-/// and the state of trees that are built. Throws UserError for a database too large for the machine.
+/// Host bytes of a replay of this frame: the above, and those for the order of packets, for what [count]
+/// keeps of each line of memory, and for the state of trees that are built. Throws UserError for a database
+/// too large for the machine.
 [[nodiscard]] std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config);
 
 }  // namespace marti::processors::replay

@@ -39,8 +39,8 @@ class MachineFigures {
 struct Estimate {
   MachineFigures value;
   MachineFigures half_width;
-  /// The misses that there would be if all nodes' caches held whatever the packets before had brought in:
-  /// their interval begins no higher; infinite where the method does not know it.
+  /// The misses of a frame in which a node has always just walked the same pixel: the interval of the misses
+  /// begins no higher. Infinite where the method does not know them.
   double fewest_misses = std::numeric_limits<double>::infinity();
   double references = 0.0;   ///< lines touched by the machine in the whole frame; the method's own figure
   std::uint64_t events = 0;  ///< handled to get it

@@ -73,9 +73,8 @@ std::string hit_ratio_bar(const Estimate& estimate) {
   const auto ratio = [all](double misses) { return 100.0 * std::max(0.0, 1.0 - misses / all); };
   const std::string value = fmt::format("{:.2f} %", ratio(estimate.value[Figure::misses]));
   const auto [fewest, most] = interval(estimate, Figure::misses);
-  return std::isnan(fewest)
-             ? fmt::format("{:<14}error not known\n", value)
-             : fmt::format("{:<14}{:<11} {:.2f} % to {:.2f} %\n", value, "", ratio(most), ratio(fewest));
+  return std::isnan(fewest) ? fmt::format("{:<14}error not known\n", value)
+                            : fmt::format("{:<26}{:.2f} % to {:.2f} %\n", value, ratio(most), ratio(fewest));
 }
 
 // A figure in percent, with its half-width in points.

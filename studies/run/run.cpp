@@ -155,9 +155,12 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
   const bool pays = StrippedLog::ways_of(machine) != 0 &&
                     StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
                     StrippedLog::key_of(machine) == StrippedLog::key_of(other);
+  if (!pays) {
+    return nullptr;
+  }
   const std::uint64_t taken = log_bytes + processors::replay::host_bytes(log, machine) + map_bytes(frame);
   const std::uint64_t left = frame.memory.left();
-  if (!pays || taken >= left) {
+  if (taken >= left) {
     return nullptr;
   }
   KeptStrippedLogs* const kept = options.stripped_logs;

@@ -125,6 +125,12 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
         }
       },
       std::move(outlook.costs));
+  const auto clean_up = [&] {
+    progress.end();
+    if (is_new) {
+      remove_if_empty(store, report.store);
+    }
+  };
   try {
     const host::AtSignal last_words([&](int signal) {
       const std::size_t saved = coordinator.close_for_good();
@@ -140,16 +146,13 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
       work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
     }
-  } catch (const std::exception& error) {
-    progress.end();
-    if (is_new) {
-      remove_if_empty(store, report.store);
-    }
-    if (dynamic_cast<const sim::UserError*>(&error) == nullptr) {
-      throw;
-    }
+  } catch (const sim::UserError& error) {
+    clean_up();
     throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
                          std::to_string(plan.machines.size()) + " machines are saved)");
+  } catch (...) {
+    clean_up();
+    throw;
   }
   progress.end();
   store.close();
