@@ -20,7 +20,8 @@ constexpr std::size_t nodes_of_a_piece = 4096;
 // The nodes of the binary tree that become the children of one node: beginning with the two children of
 // `node`, the one with the largest area that has children is replaced by these as long as there is room, on
 // ties the first one (as in Wald, Benthin, Boulos, "Getting Rid of Packets", IEEE Symposium on Interactive
-// Ray Tracing 2008, section 3). This can divide what alone would be a leaf: boxes that fit cost nothing.
+// Ray Tracing 2008, section 3). A binary node marked as a leaf may be divided too, because free places of a
+// record cost nothing.
 // Returns how many there are.
 std::uint32_t merged_children(const BvhBinaryTree& binary, std::uint32_t node, std::uint32_t most,
                               std::array<std::uint32_t, 8>& children) {

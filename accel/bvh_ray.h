@@ -63,8 +63,7 @@ struct BvhWaiting {
 };
 
 /// Tests the primitives of the leaf `number` in list order and tells the visitor. True when an occlusion
-/// query
-/// (`Any`) found its hit.
+/// query (`Any`) found its hit.
 template <bool Any, class Real, class Node, class Visitor>
 inline bool test_bvh_leaf(const BvhView<Node>& view, std::uint32_t number, const BvhChild& leaf,
                           const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {

@@ -6,9 +6,8 @@
 // Why no hit is missed, although boxes are tested in floats (u = 2^-24; coordinates are those of BvhSpace, in
 // which the root box lies within -1 and 1):
 //  1. The ray is moved to where it enters the root box, so its origin o lies within -1 and 1, too. Its
-//  largest
-//     direction component is 1, and a reciprocal r of a component is at most 2^60: a smaller component moves
-//     the ray by less than 2^-57 within the root box.
+//     largest direction component is 1, and a reciprocal r of a component is at most 2^60: a smaller
+//     component moves the ray by less than 2^-57 within the root box.
 //  2. A plane p is met at p * r - o * r. The exact value is missed by at most 8 u (|p| + |o|) |r|, roundings
 //     of r, of o * r, of the product and of the difference together; where planes are quantised by
 //     20 u |r|. So each box is enlarged by 2^-18, which is a distance of 2^-18 |r| along the ray.

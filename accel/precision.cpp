@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 namespace marti::accel {
 
@@ -21,24 +21,13 @@ constexpr double longest_edge = 0x1p62;
 
 double longest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Whether the edges span an area, at any scale: both are first scaled near 1 by a power of two.
-bool has_area(glm::dvec3 p, glm::dvec3 q) {
-  int exponent = 0;
-  (void)std::frexp(std::max(longest(p), longest(q)), &exponent);
-  for (int a = 0; a < 3; ++a) {
-    p[a] = std::ldexp(p[a], -exponent);
-    q[a] = std::ldexp(q[a], -exponent);
-  }
-  return glm::cross(p, q) != glm::dvec3(0.0);
-}
-
 void look_at_triangle(const TriangleSet& set, std::uint32_t id, PrecisionNeed& need) {
   const std::array<glm::dvec3, 3> p{set.corner(id, 0), set.corner(id, 1), set.corner(id, 2)};
   std::array<glm::dvec3, 3> r;
   for (std::size_t k = 0; k < 3; ++k) {
     r[k] = {rounded(p[k].x), rounded(p[k].y), rounded(p[k].z)};
   }
-  if (has_area(p[1] - p[0], p[2] - p[0]) && !has_area(r[1] - r[0], r[2] - r[0])) {
+  if (!scenes::has_no_area(p[0], p[1], p[2]) && scenes::has_no_area(r[0], r[1], r[2])) {
     ++need.collapsed;
   }
   const double edge = std::max({longest(p[1] - p[0]), longest(p[2] - p[0]), longest(p[2] - p[1])});
@@ -61,7 +50,7 @@ double spacing_at(double x) {
   if (!(x <= static_cast<double>(std::numeric_limits<float>::max()))) {
     return std::numeric_limits<double>::infinity();
   }
-  const auto at = static_cast<float>(x);
+  const float at = std::max(static_cast<float>(x), std::numeric_limits<float>::denorm_min());
   return static_cast<double>(at) - static_cast<double>(std::nextafter(at, 0.0F));
 }
 

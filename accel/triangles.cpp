@@ -1,5 +1,6 @@
 #include "accel/triangles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -14,6 +15,29 @@ namespace {
 
 // Products of three coordinates must stay far from overflow.
 constexpr double largest_coordinate = 0x1p300;
+
+/// A triangle without area, made one of two corners of which the third is a copy of the first: no ray hits
+/// it, because the kernel's products of equal numbers are equal. Three corners of a line are no longer on one
+/// after the kernel has rounded them. The box stays, up to rounding.
+void make_unhittable(TriangleCorners& corners) {
+  std::size_t axis = 0;
+  double longest = -1.0;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [lo, hi] = std::minmax({corners[a], corners[3 + a], corners[6 + a]});
+    if (hi - lo > longest) {
+      longest = hi - lo;
+      axis = a;
+    }
+  }
+  for (std::size_t k = 1; k < 3; ++k) {
+    first = corners[3 * k + axis] < corners[3 * first + axis] ? k : first;
+    last = corners[3 * k + axis] > corners[3 * last + axis] ? k : last;
+  }
+  const std::size_t between = first == last ? 2 : 3 - first - last;
+  std::copy_n(&corners[3 * first], 3, &corners[3 * between]);
+}
 
 }  // namespace
 
@@ -50,6 +74,9 @@ void TriangleSet::check_triangles() {
                 << " has a coordinate that is not a number of magnitude up to 2^300: " << x;
         throw sim::UserError(message.str());
       }
+    }
+    if (scenes::has_no_area(corner(id, 0), corner(id, 1), corner(id, 2))) {
+      make_unhittable(triangles_[id]);
     }
     for (unsigned k = 0; k < 3; ++k) {
       bounds_.include(corner(id, k));

@@ -14,7 +14,8 @@
 namespace marti::accel {
 
 /// Corners a, b, c as ax ay az bx by bz cx cy cz. A vertex shared by triangles is copied bit for bit, which
-/// makes their common edges watertight.
+/// makes their common edges watertight. Of a triangle without area (scenes::has_no_area) two corners are
+/// equal, so that no ray hits it.
 using TriangleCorners = std::array<double, 9>;
 
 /// Primitive ids are indices: of T triangles, triangle i is Scene::triangles[i] and has the id i; the curved

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include <glm/geometric.hpp>
@@ -38,13 +40,6 @@ std::vector<std::uint32_t> position_ranks(const Scene& scene) {
   return ranks;
 }
 
-bool has_no_area(const Scene& scene, const Triangle& triangle) {
-  const glm::dvec3& a = scene.positions[triangle.vertex[0]];
-  const glm::dvec3 normal =
-      glm::cross(scene.positions[triangle.vertex[1]] - a, scene.positions[triangle.vertex[2]] - a);
-  return normal == glm::dvec3(0.0);
-}
-
 std::string text_of(const glm::dvec3& v) {
   std::ostringstream out;
   out << "(" << v.x << ", " << v.y << ", " << v.z << ")";
@@ -53,10 +48,20 @@ std::string text_of(const glm::dvec3& v) {
 
 }  // namespace
 
+bool has_no_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const auto largest = [](const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  };
+  const double edge = std::max(largest(b - a), largest(c - a));
+  return !(largest(glm::cross(b - a, c - a)) * edge >= std::numeric_limits<double>::min());
+}
+
 std::uint64_t count_degenerate(const Scene& scene) {
+  const auto degenerate = [&p = scene.positions](const Triangle& triangle) {
+    return has_no_area(p[triangle.vertex[0]], p[triangle.vertex[1]], p[triangle.vertex[2]]);
+  };
   return static_cast<std::uint64_t>(
-      std::count_if(scene.triangles.begin(), scene.triangles.end(),
-                    [&scene](const Triangle& triangle) { return has_no_area(scene, triangle); }));
+      std::count_if(scene.triangles.begin(), scene.triangles.end(), degenerate));
 }
 
 std::uint64_t host_bytes(const Scene& scene) {

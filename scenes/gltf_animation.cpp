@@ -33,9 +33,8 @@ Interpolation interpolation_of(const Model& model, const std::string& text, cons
 
 void check_weights(const Model& model, const std::vector<double>& weights, std::size_t count,
                    const std::string& user) {
-  const bool finite =
-      std::all_of(weights.begin(), weights.end(), [](double weight) { return std::isfinite(weight); });
-  if (weights.size() != count || !finite) {
+  const auto finite = [](double weight) { return std::isfinite(weight); };
+  if (weights.size() != count || !std::all_of(weights.begin(), weights.end(), finite)) {
     model.fail(user + ": its weights must be " + std::to_string(count) +
                " finite numbers, one for each morph target");
   }
@@ -83,11 +82,14 @@ class TrackReader {
 
   /// Counts elements for each sampler: many samplers may share one large accessor in a small file.
   void charge(int index, const std::string& user) {
-    read_ += accessor(index, user).count;
+    const std::uint64_t count = accessor(index, user).count;
+    read_ += count;
     if (read_ > model_.options().max_triangles) {
       model_.fail(animation_ + " has more than " + std::to_string(model_.options().max_triangles) +
                   " key frames and values, which is more than is accepted");
     }
+    constexpr std::uint64_t most_numbers = 4;  // of an element: those of a quaternion
+    model_.take_memory(count * most_numbers * sizeof(double), "its key frames take");
   }
 
   void check_times(const std::vector<double>& times, const std::string& name) const {
@@ -139,6 +141,9 @@ std::size_t morph_target_count(const Model& model, int mesh) {
                  ": its primitives must have the same number of morph targets");
     }
   }
+  if (!source.weights.empty()) {
+    check_weights(model, source.weights, count, "mesh " + std::to_string(mesh));
+  }
   return count;
 }
 
@@ -149,11 +154,7 @@ const std::vector<double>* default_weights(const Model& model, int node, std::si
     return &source.weights;
   }
   const std::vector<double>& weights = model.data().meshes[static_cast<std::size_t>(source.mesh)].weights;
-  if (!weights.empty()) {
-    check_weights(model, weights, count, "mesh " + std::to_string(source.mesh));
-    return &weights;
-  }
-  return nullptr;
+  return weights.empty() ? nullptr : &weights;
 }
 
 Animation::Path Animation::path_of(const Model& model, const std::string& path, const std::string& name) {

@@ -12,7 +12,7 @@ namespace marti::scenes::gltf {
 struct Expanded {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
-  std::uint64_t sources = 0;  ///< vertices of the meshes themselves, each counted once
+  std::uint64_t source_bytes = 0;  ///< of the meshes' own vertices, each counted once
   bool normals = false;
   bool coordinates = false;
 

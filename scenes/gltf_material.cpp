@@ -211,6 +211,11 @@ int Materials::first_alike(int image, const std::string& user) {
   const std::span<const std::byte> bytes = find_image(image, user).bytes;
   const auto [place, is_new] = image_at_.try_emplace(std::pair(bytes.data(), bytes.size()), image);
   if (is_new) {
+    // Images that overlap each other in a buffer can have many times its bytes.
+    compared_ += bytes.size();
+    if (compared_ / 8 > model_.options().max_file_bytes) {
+      model_.fail("its images together have more than 8 times the bytes that a file may have");
+    }
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     place->second = image_of_bytes_.try_emplace(text, image).first->second;
   }

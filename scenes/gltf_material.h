@@ -66,6 +66,7 @@ class Materials {
   std::set<int> images_;
   std::map<std::pair<const std::byte*, std::size_t>, int> image_at_;  // so that shared bytes are hashed once
   std::unordered_map<std::string_view, int> image_of_bytes_;          // of the model's buffers
+  std::uint64_t compared_ = 0;                                        // bytes of different images
   std::map<std::tuple<int, int, int>, std::uint32_t> textures_;       // by image and wrap modes
 };
 

@@ -75,10 +75,18 @@ FileUse use_of(const Model& model, const std::vector<SceneNode>& nodes, const Ma
 
 void read_unused(const Model& model, const Materials& materials) {
   const tinygltf::Model& file = model.data();
+  const std::uint64_t most = 64 * model.options().max_triangles;
+  std::uint64_t elements = 0;
   for (std::size_t i = 0; i < file.accessors.size(); ++i) {
     const tinygltf::Accessor& accessor = file.accessors[i];
     if (model.was_read(i)) {
       continue;
+    }
+    // Many accessors may share a large buffer in a small file.
+    elements += std::min<std::uint64_t>(accessor.count, most + 1);
+    if (elements > most) {
+      model.fail("the accessors that its scene does not use have more than " + std::to_string(most) +
+                 " elements, which is more than is read");
     }
     const int index = static_cast<int>(i);
     if (accessor.type == TINYGLTF_TYPE_MAT4) {

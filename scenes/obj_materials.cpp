@@ -68,7 +68,7 @@ void ObjMaterials::add_libraries(const TextLines& statement) {
 }
 
 void ObjMaterials::add_library(const std::string& name, const TextLines& statement) {
-  if (!libraries_.insert(name).second) {
+  if (!libraries_.insert(std::filesystem::path(name).lexically_normal().string()).second) {
     return;
   }
   const std::string text = bytes_of(name, statement.place());

@@ -59,7 +59,7 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
     refuse_parts(spec, "a PLY file", options.file);
     return open_ply(path_of(spec, options), options.file);
   }
-  Scene scene = make_procedural(spec);
+  Scene scene = make_procedural(spec, options.file.memory);
   refuse_parts(spec, "a procedural scene", options.file);
   return AnimatedScene(std::move(scene));
 }

@@ -47,7 +47,7 @@ struct SceneFacts {
   std::uint64_t cones = 0;
   std::uint64_t vertices = 0;              ///< as stored
   std::uint64_t distinct_positions = 0;    ///< of triangles' corners, compared bit for bit
-  std::uint64_t degenerate_triangles = 0;  ///< with an area of exactly zero
+  std::uint64_t degenerate_triangles = 0;  ///< without an area (scene.h, has_no_area)
   std::uint64_t duplicate_triangles = 0;   ///< with the same three positions as an earlier one, in any order
   std::uint64_t materials = 0;
   std::uint64_t textures = 0;
@@ -61,7 +61,8 @@ struct SceneFacts {
 /// Bytes of host memory that facts_of() takes in addition, while it sorts.
 [[nodiscard]] std::uint64_t host_bytes_of_facts(const Scene& scene);
 
-/// The number of triangles with an area of exactly zero. Takes time proportional to the number of triangles.
+/// The number of triangles without an area (scene.h, has_no_area). Takes time proportional to the number of
+/// triangles.
 [[nodiscard]] std::uint64_t count_degenerate(const Scene& scene);
 
 /// Counts everything in SceneFacts; sorts positions and triangles to compare them.

@@ -14,42 +14,75 @@ namespace marti::scenes {
 
 namespace {
 
+// While a scene is made: a triangle with its share of vertices and their index, or a sphere, cylinder or
+// cone, in lists that grow by doubling.
+constexpr std::uint64_t bytes_a_primitive = 160;
+
 constexpr std::array<ProceduralVariant, 1> teapot_variants = {
     ProceduralVariant{"pot", "the pot alone, without the chequered board"}};
 
-// The largest sizes give about 16 million triangles, or half a million spheres, cylinders and cones.
+/// The n-th power of a whole number.
+constexpr std::uint64_t power(std::uint64_t base, std::uint64_t n) {
+  std::uint64_t product = 1;
+  for (; n > 0; --n) {
+    product *= base;
+  }
+  return product;
+}
+
+// The largest sizes give at most about 17 million triangles, or 1.1 million spheres, cylinders and cones.
 constexpr std::array<ProceduralScene, 13> registry = {
     ProceduralScene{"balls",
                     0,
                     6,
                     4,
                     "a flake of spheres, n generations of them, on a floor; (9^(n+1) - 1) / 8 spheres",
-                    {}},
-    ProceduralScene{
-        "gears", 1, 30, 4, "n x n x n meshing gears over a ground, some of glass; 146 n^3 + 1 polygons", {}},
+                    {},
+                    [](std::uint64_t n) { return (power(9, n + 1) - 1) / 8 + 2; }},
+    ProceduralScene{"gears",
+                    1,
+                    30,
+                    4,
+                    "n x n x n meshing gears over a ground, some of glass; 146 n^3 + 1 polygons",
+                    {},
+                    [](std::uint64_t n) { return 572 * n * n * n + 2; }},
     ProceduralScene{"jacks",
                     1,
                     6,
                     4,
                     "a toy jack with eight of half its size in its corners, n generations; "
                     "3 (8^n - 1) / 7 cylinders and twice as many spheres",
-                    {}},
-    ProceduralScene{"large", 1, 1, 1, "gears:2 and two teapots of 12 without boards; 19,409 polygons", {}},
+                    {},
+                    [](std::uint64_t n) { return 9 * (power(8, n) - 1) / 7; }},
+    ProceduralScene{"large",
+                    1,
+                    1,
+                    1,
+                    "gears:2 and two teapots of 12 without boards; 19,409 polygons",
+                    {},
+                    [](std::uint64_t /*n*/) { return std::uint64_t{22'818}; }},
     ProceduralScene{"lattice",
                     1,
                     50,
                     12,
                     "spheres on an n x n x n lattice joined by rods; (n+1)^3 spheres, 3 n (n+1)^2 cylinders",
-                    {}},
-    ProceduralScene{
-        "mount", 1, 7, 6, "a fractal mountain and four glass balls; 2 * 4^n triangles, 4 spheres", {}},
+                    {},
+                    [](std::uint64_t n) { return (n + 1) * (n + 1) * (4 * n + 1); }},
+    ProceduralScene{"mount",
+                    1,
+                    7,
+                    6,
+                    "a fractal mountain and four glass balls; 2 * 4^n triangles, 4 spheres",
+                    {},
+                    [](std::uint64_t n) { return 2 * power(4, n) + 4; }},
     ProceduralScene{"rings",
                     1,
                     30,
                     7,
                     "interlocking rings in a pyramid of n layers before a wall; 5 n (n+1) (2n+1) "
                     "spheres and as many cylinders",
-                    {}},
+                    {},
+                    [](std::uint64_t n) { return 10 * n * (n + 1) * (2 * n + 1) + 2; }},
     ProceduralScene{
         "room",
         2,
@@ -57,25 +90,40 @@ constexpr std::array<ProceduralScene, 13> registry = {
         12,
         "a matt teapot of n x n cuts a patch and a mirrored ball in a closed white room with one red "
         "and one green wall, lit by an emissive panel; without lights, for path tracing",
-        {}},
-    ProceduralScene{"shells", 0, 10, 1, "a sea shell; 180 * 2^n + 1 spheres", {}},
+        {},
+        [](std::uint64_t n) { return 64 * n * n - 8 * n + 21; }},
+    ProceduralScene{"shells",
+                    0,
+                    10,
+                    1,
+                    "a sea shell; 180 * 2^n + 1 spheres",
+                    {},
+                    [](std::uint64_t n) { return 180 * power(2, n) + 1; }},
     ProceduralScene{"sombrero",
                     1,
                     6,
                     2,
                     "a ripple as a height field, its side doubled n - 1 times; 2 (16 * 2^n - 1)^2 triangles",
-                    {}},
+                    {},
+                    [](std::uint64_t n) { return 2 * power(power(2, n + 4) - 1, 2); }},
     ProceduralScene{"teapot", 2, 500, 12,
                     "the Utah teapot on a board of n x n squares, each of its 32 patches cut n x n; "
                     "64 n^2 - 8 n triangles without the board",
-                    teapot_variants},
-    ProceduralScene{"tetra", 1, 12, 6, "a Sierpinski tetrahedron; 4^n triangles", {}},
+                    teapot_variants, [](std::uint64_t n) { return 66 * n * n - 8 * n; }},
+    ProceduralScene{"tetra",
+                    1,
+                    12,
+                    6,
+                    "a Sierpinski tetrahedron; 4^n triangles",
+                    {},
+                    [](std::uint64_t n) { return power(4, n); }},
     ProceduralScene{"tree",
                     0,
                     17,
                     11,
                     "a bare tree that forks n times, on a field; 2^(n+1) - 1 cones and as many spheres",
-                    {}}};
+                    {},
+                    [](std::uint64_t n) { return 2 * power(2, n + 1); }}};
 
 Scene make(std::string_view name, std::uint32_t size, bool whole) {
   struct Recipe {
@@ -148,7 +196,7 @@ std::uint32_t parse_size(std::string_view text, const ProceduralScene& scene, co
 
 std::span<const ProceduralScene> procedural_scenes() { return registry; }
 
-Scene make_procedural(std::string_view spec) {
+Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory) {
   const std::string where = "scene '" + sim::shown(spec) + "': ";
   std::string_view rest = spec;
   const ProceduralScene& kind = find_scene(next_part(rest), where);
@@ -168,6 +216,8 @@ Scene make_procedural(std::string_view spec) {
                                                 "; known are " + joined(names)));
     }
   }
+  memory.require(kind.primitives(size) * bytes_a_primitive, "the scene '" + sim::shown(spec) + "' takes",
+                 "take a smaller scene");
   Scene scene = make(kind.name, size, !has_variant);
   scene.name = kind.name;
   if (kind.minimum_size != kind.maximum_size) {

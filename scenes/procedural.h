@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scenes/scene.h"
+#include "sim/memory_budget.h"
 
 namespace marti::scenes {
 
@@ -24,6 +25,7 @@ struct ProceduralScene {
   std::uint32_t default_size;
   std::string_view meaning;  ///< what the scene shows, and the effect of the size n
   std::span<const ProceduralVariant> variants;
+  std::uint64_t (*primitives)(std::uint64_t n);  ///< how many there are at size n, without a variant
 };
 
 /// Every procedural scene, in alphabetical order.
@@ -31,7 +33,8 @@ struct ProceduralScene {
 
 /// Makes the scene of `spec` = name[:size[:variant]], for example "teapot", "gears:4", "teapot:12:pot". The
 /// same spec gives the same bytes. Throws UserError for an unknown name or variant (naming the nearest valid
-/// one) and for a size that is not a whole number or out of range.
-[[nodiscard]] Scene make_procedural(std::string_view spec);
+/// one), for a size that is not a whole number or out of range, and KeyError when the scene takes more than
+/// `memory`.
+[[nodiscard]] Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory = {});
 
 }  // namespace marti::scenes

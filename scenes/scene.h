@@ -92,6 +92,10 @@ struct Scene {
   std::vector<std::string> notes;  ///< what the loader chose or left out, one sentence each
 };
 
+/// Whether three corners lie on a line, or so close together (2^-340) that products of three of their
+/// distances are below the smallest normal double. No ray hits such a triangle.
+[[nodiscard]] bool has_no_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
 /// The material of a primitive id.
 [[nodiscard]] inline std::uint32_t material_of(const Scene& scene, std::uint32_t primitive) {
   return primitive < scene.triangles.size() ? scene.triangles[primitive].material

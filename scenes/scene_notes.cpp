@@ -22,8 +22,9 @@ void note_bad_positions(std::uint64_t count, const char* kind, Scene& scene) {
 void note_degenerate(Scene& scene) {
   const std::uint64_t degenerate = count_degenerate(scene);
   if (degenerate > 0) {
-    scene.notes.push_back(std::to_string(degenerate) + " of " + std::to_string(scene.triangles.size()) +
-                          " triangles have no area; no ray can hit them.");
+    scene.notes.push_back(
+        std::to_string(degenerate) + " of " + std::to_string(scene.triangles.size()) +
+        " triangles have no area, or less than numbers of 64 bits can hold; no ray can hit them.");
   }
 }
 

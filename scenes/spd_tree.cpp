@@ -40,7 +40,7 @@ struct Frame {
   }
 };
 
-/// Depth n <= 18 bounds the recursion.
+/// Depth n <= 17 bounds the recursion.
 void add_branch(Scene& scene, std::uint32_t n, const Frame& frame, double size) {
   const double radius = 0.15 * size;
   const glm::dvec3 tip = frame.origin + frame.z;

@@ -26,7 +26,7 @@ class TextLines {
   /// Goes to the next line that has words. False at the end of the text.
   [[nodiscard]] bool next();
 
-  /// The line's words, which are never none after next().
+  /// The line's words; at least one if next() returned true.
   [[nodiscard]] const std::vector<std::string_view>& words() const { return words_; }
   /// The line from a word on to its end, without the blanks there; empty if there is no such word.
   [[nodiscard]] std::string_view from(std::size_t word) const;

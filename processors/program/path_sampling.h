@@ -165,8 +165,8 @@ EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitt
   const Vec3<Real> way = point - surface.point;
   const Real squared = dot(way, way);
   EmitterSample<Real> sample;
-  if (!(squared > Real(0x1p-600))) {
-    return sample;  // at the surface point itself, or so near that its radiance might not be finite
+  if (!lights_at(squared)) {
+    return sample;
   }
   sample.light.direction = way * (Real(1.0) / sqrt(squared));
   const Real weights[3] = {b[0], b[1], b[2]};

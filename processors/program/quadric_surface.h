@@ -22,8 +22,12 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   const Vec3<Real> from_center = hit - center;
   const Real height = dot(from_center, axis);  // 0 for a sphere, whose axis is 0
   const Vec3<Real> on_axis = axis * height;
-  const Vec3<Real> out = from_center - on_axis;
-  const Real squared = dot(out, out);
+  Vec3<Real> out = from_center - on_axis;
+  Real squared = dot(out, out);
+  if (!in_range(squared)) [[unlikely]] {
+    out = scaled_near_one(out);
+    squared = dot(out, out);
+  }
 
   Surface<Real> surface;
   Vec3<Real> radial;

@@ -83,7 +83,8 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   // there would hit it by rounding. 2^-48 (of doubles) leaves a factor of two.
   surface.margin = largest(absolute(p1 - p0) + absolute(p2 - p0)) * Real(32.0 * rounding<Real>);
 
-  surface.geometric = normalized(cross(p1 - p0, p2 - p0));
+  // In floats a triangle may have lost its area, and yet be hit: then it faces the viewer.
+  surface.geometric = unit_normal(p1 - p0, p2 - p0, -direction);
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
   if (!surface.outside) {
     surface.geometric = -surface.geometric;
@@ -134,10 +135,6 @@ Format next_toward(Format value, Format toward) {
   return std::bit_cast<Format>((value > Format(0)) == (toward > Format(0)) ? bits + 1 : bits - 1);
 }
 
-/// The number type behind a scalar of the templates: float or double.
-template <typename Real>
-using Held = std::conditional_t<std::is_same_v<Real, float>, float, double>;
-
 /// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's normal
 /// out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
 /// Rendering, 4th ed., section 6.8.6). A fixed epsilon fails for very small and for very large scenes.
@@ -165,6 +162,14 @@ struct LightSample {
   bool at_infinity = false;  ///< directional
 };
 
+/// Whether a light at this squared distance can light a point: not where it stands, or so near that its
+/// radiance might not be finite; in floats also not where the square is beyond the format.
+template <typename Real>
+bool lights_at(const Real& squared) {
+  constexpr double nearest = std::is_same_v<Real, float> ? 0x1p-100 : 0x1p-600;
+  return squared > Real(nearest) && std::isfinite(static_cast<Held<Real>>(squared));
+}
+
 /// glTF's KHR_lights_punctual: spot cone, range window. inverse_square off: no inverse-square fall-off.
 template <typename Real>
 LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) {
@@ -179,8 +184,8 @@ LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) 
   }
   const Vec3<Real> to_light = Vec3<Real>(light.position) - point;
   const Real squared = dot(to_light, to_light);
-  if (!(squared > Real(0x1p-600))) {
-    return sample;  // at the light's own position, or so near that its radiance might not be finite
+  if (!lights_at(squared)) {
+    return sample;
   }
   sample.direction = to_light * (Real(1.0) / sqrt(squared));
   Real strength(1.0);

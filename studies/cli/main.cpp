@@ -192,6 +192,7 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  tables::refuse_store_of_sweep(arguments.directory);
   const sim::MadeDirectory made = show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
     host::load_image_library();

@@ -18,7 +18,7 @@ namespace marti::studies::limits {
 namespace {
 
 // "limits        node.clock of 612 points, machine.nodes of 388"
-std::string limits_line(const std::map<std::string, std::size_t>& count) {
+std::string limits_line(const std::map<std::string, std::size_t>& count, std::size_t open) {
   std::vector<std::pair<std::string, std::size_t>> names(count.begin(), count.end());
   std::stable_sort(names.begin(), names.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -26,6 +26,9 @@ std::string limits_line(const std::map<std::string, std::size_t>& count) {
   for (const auto& [name, points] : names) {
     text += fmt::format("{}{} of {}", text.empty() ? "limits        " : ", ", name,
                         text.empty() ? tables::counted(points, "point") : tables::grouped(points));
+  }
+  if (open > 0) {
+    text += fmt::format("; of {} another key may save more (limit_open)", tables::counted(open, "point"));
   }
   return text.empty() ? text : text + "\n";
 }
@@ -36,11 +39,13 @@ LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optiona
   tables::Table table = sweep::points_table(sweep);
   const StoredLimits limits(sweep, prices);
   const std::size_t ordinal = table.column("ordinal");
-  const std::array<tables::Column, 3> columns = {
+  const std::array<tables::Column, 4> columns = {
       {{"limit", tables::ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"},
        {"limit_saves", tables::ColumnType::real, "fraction", "of the frame time that this saves, predicted"},
-       {"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"}}};
+       {"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"},
+       {"limit_open", tables::ColumnType::text, "", "keys of which nothing is known that may save more"}}};
   std::map<std::string, std::size_t> count;
+  std::size_t open = 0;
   table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {
     const std::optional<PointLimit> limit = limits.at(std::get<std::int64_t>(row[ordinal]));
     const PredictedStep* const best = limit ? limit->best() : nullptr;
@@ -50,9 +55,14 @@ LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optiona
     if (best == nullptr) {
       return std::vector<tables::Cell>(columns.size());
     }
-    return {best->name, best->saved, best->rests_on};
+    std::string others;
+    for (const PredictedStep* const step : limit->open()) {
+      others += (others.empty() ? "" : ", ") + step->name;
+    }
+    open += others.empty() ? 0U : 1U;
+    return {best->name, best->saved, best->rests_on, others};
   });
-  return {std::move(table), limits_line(count)};
+  return {std::move(table), limits_line(count, open)};
 }
 
 }  // namespace marti::studies::limits

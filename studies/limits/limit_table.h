@@ -9,7 +9,8 @@
 namespace marti::studies::limits {
 
 struct LimitedPoints {
-  tables::Table table;  ///< points_table() and behind it the columns limit, limit_saves, limit_rests_on
+  tables::Table table;  ///< points_table() and behind it the columns limit, limit_saves, limit_rests_on,
+                        ///< limit_open
   std::string text;     ///< how many points each resource limits; empty where nothing is known
 };
 

@@ -170,6 +170,19 @@ CaseOutcome degenerate_triangles(const CaseSize& size) {
   return none_wrong(tally, "hit");
 }
 
+/// Corners d, -d and 0 lie on a line exactly, whatever d is; once sheared and rounded they do not.
+CaseOutcome collinear_triangles(const CaseSize& size) {
+  Random random(3);
+  Tally tally;
+  for (std::uint32_t k = 0; k < size.rays; ++k) {
+    const glm::dvec3 d = random.direction();
+    const glm::dvec3 toward = random.direction();
+    const accel::TriangleSet set(std::vector<TriangleCorners>{corners(d, -d, glm::dvec3(0.0))});
+    tally.add(!test_one({-4.0 * toward, toward}, set[0]).found());
+  }
+  return none_wrong(tally, "hit");
+}
+
 /// A closed mesh at some place, traced through every structure.
 struct LeakPlace {
   const char* id;
@@ -215,6 +228,8 @@ void add_kernel_cases(std::vector<StabilityCase>& cases) {
   add("closed-fan", "a ray through the common corner of 3 to 64 triangles passes between them",
       "at least one is hit", closed_fans);
   add("degenerate-hit", "a triangle without area is hit by rounding", "none is hit", degenerate_triangles);
+  add("collinear-hit", "a triangle of three corners on an oblique line is hit by rounding", "none is hit",
+      collinear_triangles);
   add("scale-by-two", "hits depend on the unit of length",
       "all places times 2^k, k to +-30: same hits, t times 2^k", power_of_two);
   add("turned-axes", "hits depend on which axis is which", "x, y, z to y, z, x: same hits, bit for bit",

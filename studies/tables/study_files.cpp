@@ -1,17 +1,28 @@
 #include "studies/tables/study_files.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
+#include "sim/error.h"
 #include "studies/host/image_file.h"
 #include "studies/host/signals_held.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/pending_files.h"
+#include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite.h"
+#include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* database_name = "results.sqlite";
+
+}  // namespace
 
 std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& directory) {
   const host::SignalsHeld held;
@@ -35,8 +46,30 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
     files.write("host.txt", output.host_report);
   }
   all.push_back(columns);
-  write_database(files.add("results.sqlite"), all);
+  write_database(files.add(database_name), all);
   return files.commit();
+}
+
+void refuse_store_of_sweep(const fs::path& directory) {
+  const fs::path file = directory / database_name;
+  if (directory.empty() || !is_there(file)) {
+    return;
+  }
+  // The store of a sweep has an application's number (studies/sweep/store), the database of a study none.
+  std::optional<std::int64_t> application;
+  try {
+    application =
+        SqliteConnection(file, SqliteConnection::Access::read).value<std::int64_t>("PRAGMA application_id");
+  } catch (const sim::UserError&) {
+    return;  // no database
+  }
+  if (application == 0) {
+    return;
+  }
+  throw sim::UserError(
+      file.string() +
+      ": is the store of a sweep, which a study does not replace; give another directory, or "
+      "remove the file");
 }
 
 }  // namespace marti::studies::tables

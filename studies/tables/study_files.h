@@ -37,4 +37,7 @@ struct StudyOutput {
 std::vector<std::filesystem::path> write_study(const StudyOutput& output,
                                                const std::filesystem::path& directory);
 
+/// Throws UserError where write_study() would replace the store of a sweep by the tables of a study.
+void refuse_store_of_sweep(const std::filesystem::path& directory);
+
 }  // namespace marti::studies::tables

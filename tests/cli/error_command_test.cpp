@@ -78,8 +78,7 @@ TEST(StudyError, WrongInputIsTwo) {
 
 const std::string machine =
     quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
-    " --set scene.source=teapot:2 --set image.width=256 --set image.height=256 --set packets.width=4 "
-    "--set packets.height=4 ";
+    " --set scene.source=teapot:2 --set image.width=448 --set image.height=448 --no-what-helps ";
 
 TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
   const Outcome wide = marti("run " + machine + "--within '60 %'");
@@ -109,7 +108,7 @@ TEST(RunWithin, GivesTheSameToPrograms) {
   const auto json = nlohmann::json::parse(wide.output);
   const auto& estimate = json["estimate"];
   EXPECT_EQ(estimate["tolerance"], 0.6);
-  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], 256);
+  EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], 448);
   EXPECT_FALSE(estimate["one_node"].contains("speed_up"));
   for (const char* figure : {"end", "speed_up", "misses", "use", "wait"}) {
     const auto& bar = estimate["machine"][figure];

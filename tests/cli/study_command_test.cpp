@@ -45,6 +45,19 @@ TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
   EXPECT_GE(compared, 12);
 }
 
+TEST(Study, ReplacesNoSweep) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "a.toml";
+  write(config, "[scene]\nsource = \"teapot:2\"\n[image]\nwidth = 8\nheight = 8\n");
+  const std::string out = " -o " + quoted(directory.path() / "out");
+  const std::string sweep = "sweep " + quoted(config) + " --axis machine.nodes=1,2 --quiet" + out;
+  ASSERT_EQ(marti(sweep).status, 0);
+  const Outcome refused = marti("study operations " + quoted(config) + out);
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_TRUE(says(refused, "results.sqlite: is the store of a sweep")) << refused.output;
+  EXPECT_TRUE(says(marti(sweep), "2 done")) << "the sweep's points stay";
+}
+
 TEST(Study, WrongInputIsTwoAndOlderResultsStay) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";

@@ -2,6 +2,7 @@
 // Standard Procedural Databases and of V. Havran's statistics of them.
 #include "scenes/procedural.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,6 +15,7 @@
 
 #include "scenes/open.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::scenes {
 namespace {
@@ -229,6 +231,20 @@ TEST(Procedural, DefaultsAndNames) {
     EXPECT_THROW(static_cast<void>(make_procedural(beyond)), sim::UserError);
     for (const ProceduralVariant& variant : entry.variants) {
       EXPECT_GT(make_procedural(smallest + ":" + std::string(variant.name)).triangles.size(), 0U);
+    }
+  }
+}
+
+TEST(Procedural, MemoryIsEstimatedBeforeASceneIsMade) {
+  for (const ProceduralScene& entry : procedural_scenes()) {
+    const std::uint32_t size = std::min(entry.default_size, entry.maximum_size - 1);
+    for (const std::uint32_t n : {entry.minimum_size, std::max(size, entry.minimum_size)}) {
+      const std::string spec = std::string(entry.name) + ":" + std::to_string(n);
+      const Scene scene = make_procedural(spec);
+      EXPECT_EQ(scene.triangles.size() + scene.quadrics.size(), entry.primitives(n)) << spec;
+      EXPECT_THROW(static_cast<void>(make_procedural(spec, sim::MemoryBudget(host_bytes(scene)))),
+                   sim::KeyError)
+          << spec;
     }
   }
 }

@@ -37,6 +37,10 @@ TEST(Within, TolerancesArePercentagesOrFractions) {
 TEST(Within, WhatIsNotSampledSaysWhy) {
   processors::machine::MachineConfig machine;
   EXPECT_FALSE(not_sampled(machine));
+  machine.packets.width = 7;
+  ASSERT_TRUE(not_sampled(machine));
+  EXPECT_NE(not_sampled(machine)->find("these have 7 x 8"), std::string::npos);
+  machine.packets.width = 8;
   machine.scheme = processors::machine::Scheme::pipeline;
   ASSERT_TRUE(not_sampled(machine));
   EXPECT_NE(not_sampled(machine)->find("scheme"), std::string::npos);
