@@ -42,6 +42,12 @@ if(MARTI_SANITIZE)
   # These four check every access through a pointer: they take 40 % of the time to compile, and the address
   # sanitizer ends the program at a null pointer all the same.
   target_compile_options(marti_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
+  if(NOT MARTI_SANITIZE_SCOPES)
+    # A quarter of the time to compile. The long run has it.
+    target_compile_options(marti_options INTERFACE -fno-sanitize-address-use-after-scope)
+  endif()
+  # Checks of memory as calls instead of inline: a tenth less to compile, for code that is not called often.
+  set(MARTI_SANITIZE_BY_CALLS $<$<CXX_COMPILER_ID:GNU>:--param=asan-instrumentation-with-call-threshold=0>)
   target_link_options(marti_options INTERFACE -fsanitize=address,undefined)
   # dlopen() looks where the library that calls it says. The sanitizers' dlopen() calls it for the program, whose paths
   # count for its libraries too only in the older of the two forms.
@@ -93,7 +99,7 @@ function(marti_add_test name)
   endif()
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} marti_options GTest::gtest_main)
   # Tests take longer to compile than to run, so they are hardly optimised; the libraries that they test are.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> ${MARTI_SANITIZE_BY_CALLS})
   math(EXPR last "${ARG_SHARDS} - 1")
   foreach(shard RANGE ${last})
     set(test ${name})
