@@ -1,6 +1,5 @@
 #include "accel/quadric_kernel.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -167,7 +166,6 @@ struct ConeSurface {
 template <class Real>
 bool intersect_sphere(const RaySetup<Real>& ray, const QuadricShape& shape, std::uint32_t id,
                       Best<Real>& best) {
-  using std::abs;
   using std::sqrt;
   const Approach<Real> approach(ray, shape);
   const Real radius_squared = Real(shape.radius * shape.radius);

@@ -14,9 +14,6 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr double shortest_quaternion = 1e-6;  // as for a node's rotation
-constexpr double longest_quaternion = 1e6;
-
 Interpolation interpolation_of(const Model& model, const std::string& text, const std::string& name) {
   if (text == "STEP") {
     return Interpolation::step;
@@ -118,8 +115,7 @@ class TrackReader {
       model_.fail(name + ": its output has a value that is not finite");
     }
     for (std::size_t i = 0; is_rotation && i < frames.times.size(); ++i) {
-      const double length = glm::length(rotation_at(frames, frames.times[i]));
-      if (!(length > shortest_quaternion && length < longest_quaternion)) {
+      if (!is_usable_quaternion(glm::length(rotation_at(frames, frames.times[i])))) {
         model_.fail(name + ": key frame " + std::to_string(i) + " is no unit quaternion");
       }
     }

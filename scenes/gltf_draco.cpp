@@ -1,7 +1,6 @@
 #include "scenes/gltf_draco.h"
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -59,7 +58,7 @@ class PrimitiveDecompressor {
     if (primitive_.mode != TINYGLTF_MODE_TRIANGLES && primitive_.mode != -1) {
       fail("can be read for lists of triangles only");
     }
-    const int view = index_in(extension, "bufferView");
+    const int view = needed_index(extension, "bufferView");
     const std::span<const std::byte> bytes = model_.view_bytes(view, name_);
     if (!extension.Has("attributes") || !extension.Get("attributes").IsObject()) {
       fail("name no attributes");
@@ -75,7 +74,7 @@ class PrimitiveDecompressor {
     store_indices(*mesh);
     for (const std::string& semantic : attributes.Keys()) {
       if (attribute(primitive_.attributes, semantic) >= 0) {
-        store_attribute(*mesh, semantic, index_in(attributes, semantic.c_str()));
+        store_attribute(*mesh, semantic, needed_index(attributes, semantic.c_str()));
       }
     }
   }
@@ -85,12 +84,12 @@ class PrimitiveDecompressor {
     model_.fail(name_ + ": its compressed data " + what);
   }
 
-  [[nodiscard]] int index_in(const tinygltf::Value& object, const char* key) const {
-    const double index = number_in(object, key).value_or(-1.0);
-    if (!(index >= 0.0 && index < 1e9 && index == std::floor(index))) {
+  [[nodiscard]] int needed_index(const tinygltf::Value& object, const char* key) const {
+    const std::optional<int> index = index_in(object, key);
+    if (!index) {
       fail("need a whole number as " + double_quoted(key));
     }
-    return static_cast<int>(index);
+    return *index;
   }
 
   /// An accessor that the data are for. It must have no bytes yet.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <glm/common.hpp>
 
@@ -77,6 +76,12 @@ std::optional<double> number_in(const tinygltf::Value& object, const char* key) 
   }
   const double value = object.Get(key).GetNumberAsDouble();
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<int> index_in(const tinygltf::Value& object, const char* key) {
+  const double index = number_in(object, key).value_or(-1.0);
+  return index >= 0.0 && index < 1e9 && index == std::floor(index) ? std::optional(static_cast<int>(index))
+                                                                   : std::nullopt;
 }
 
 std::optional<glm::dvec3> color_in(const tinygltf::Value& object, const char* key, double lowest,

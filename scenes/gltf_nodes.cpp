@@ -64,7 +64,7 @@ glm::dmat4 local_transform(const Model& model, int index, const NodeChange& chan
   if (!rotation.empty()) {
     const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);
     const double length = glm::length(q);
-    if (!(length > 1e-6 && length < 1e6)) {
+    if (!is_usable_quaternion(length)) {
       model.fail(name_of_node(index) + ": its rotation is no unit quaternion");
     }
     m = glm::mat4_cast(q / length);

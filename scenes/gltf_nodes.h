@@ -26,6 +26,9 @@ struct PlacedNode {
   glm::dmat4 world{1.0};
 };
 
+/// Whether a rotation's quaternion, a unit one by the format, has a length that can be brought to 1.
+[[nodiscard]] inline bool is_usable_quaternion(double length) { return length > 1e-6 && length < 1e6; }
+
 /// The properties of a node that an animation changes, at one time. Others are as in the file.
 struct NodeChange {
   std::optional<glm::dvec3> translation;

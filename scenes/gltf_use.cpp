@@ -1,7 +1,6 @@
 #include "scenes/gltf_use.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <string>
 

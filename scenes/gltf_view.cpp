@@ -124,11 +124,11 @@ void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
     if (found == node.extensions.end()) {
       continue;
     }
-    const double index = number_in(found->second, "light").value_or(-1.0);
-    if (!(index >= 0.0 && index < 1e9 && index == std::floor(index))) {
+    const std::optional<int> index = index_in(found->second, "light");
+    if (!index) {
       model.fail("node " + std::to_string(place.node) + ": its KHR_lights_punctual names no light");
     }
-    scene.lights.push_back(convert_light(model, static_cast<int>(index), place));
+    scene.lights.push_back(convert_light(model, *index, place));
   }
 }
 

@@ -1,7 +1,6 @@
 #include "scenes/quadric.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 

@@ -74,16 +74,6 @@ class GearBuilder {
     ++scene_.polygons;
   }
 
-  void add_ground(std::uint32_t material) {
-    const auto first = static_cast<std::uint32_t>(scene_.positions.size());
-    for (const auto& [x, y] : {std::pair{-2.0, -2.0}, {2.0, -2.0}, {2.0, 2.0}, {-2.0, 2.0}}) {
-      scene_.positions.emplace_back(x, y, 0.0);
-    }
-    add_triangle(first, first + 1, first + 2, material);
-    add_triangle(first + 2, first + 3, first, material);
-    ++scene_.polygons;
-  }
-
  private:
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {
     scene_.triangles.push_back({{a, b, c}, material, static_cast<std::uint32_t>(scene_.polygons)});
@@ -115,16 +105,9 @@ Scene make_gears(std::uint32_t n) {
                                                 glm::dvec3{2.0, -2.5, 2.5}, glm::dvec3{-1.0, -4.0, 2.0},
                                                 glm::dvec3{-1.111, -2.121, 2.626}};
   set_lights(scene, lights);
-  Material ground;
-  ground.name = "ground";
-  ground.color = {1.0, 0.85, 0.7};
-  ground.diffuse = 0.3;
-  ground.reflection = 0.6;
-  ground.highlight = 0.3;
-  ground.shininess = shininess_of_angle(37.0);
-  scene.materials.push_back(ground);
+  scene.materials.push_back(make_material("ground", {1.0, 0.85, 0.7}, 0.3, 0.6, 0.3, 37.0));
+  add_square(scene, {{{-2.0, -2.0, 0.0}, {2.0, -2.0, 0.0}, {2.0, 2.0, 0.0}, {-2.0, 2.0, 0.0}}}, 0);
   GearBuilder builder(scene);
-  builder.add_ground(0);
 
   const double count = n;
   const double radius = 1.0 / (count - (count - 1.0) * edge / 2.0);

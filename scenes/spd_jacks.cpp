@@ -1,7 +1,5 @@
 // SPD jacks(n): a jack of three rods with a ball at each of its six ends, and in its eight corners jacks of
 // half the size, n deep; 9 (8^n - 1) / 7 primitives.
-#include <array>
-#include <cmath>
 #include <numbers>
 
 #include "scenes/spd.h"

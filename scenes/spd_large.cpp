@@ -5,7 +5,6 @@
 // "Performance of Space Subdivision Techniques in Ray Tracing" (Computer Graphics Forum 11(4), 1992), which
 // the paper does not name. 1,169 + 2 * 9,120 is a sum that fits, not a reconstruction.
 #include <array>
-#include <cmath>
 
 #include "scenes/spd.h"
 

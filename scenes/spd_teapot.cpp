@@ -112,24 +112,13 @@ void add_board(Scene& scene, VertexWelder& vertices, std::uint32_t n) {
   }
 }
 
-Material shiny(const char* name, const glm::dvec3& color, double diffuse, double specular, double angle) {
-  Material material;
-  material.name = name;
-  material.color = color;
-  material.diffuse = diffuse;
-  material.reflection = specular;
-  material.highlight = specular;
-  material.shininess = shininess_of_angle(angle);
-  return material;
-}
-
 }  // namespace
 
 Scene make_teapot(std::uint32_t n, bool with_board) {
   Scene scene = make_scene({4.86, 7.2, 5.4}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
   constexpr std::array<glm::dvec3, 2> lights = {glm::dvec3{-3.1, 9.8, 12.1}, glm::dvec3{11.3, 5.1, 8.8}};
   set_lights(scene, lights);
-  scene.materials.push_back(shiny("pot", {1.0, 0.5, 0.1}, 0.75, 0.25, 37.0));
+  scene.materials.push_back(make_material("pot", {1.0, 0.5, 0.1}, 0.75, 0.25, 0.25, 37.0));
   VertexWelder vertices(scene);
   for (const auto& indices : teapot_patches) {
     Patch patch;
@@ -140,8 +129,8 @@ Scene make_teapot(std::uint32_t n, bool with_board) {
     add_patch(scene, vertices, patch, n);
   }
   if (with_board) {
-    scene.materials.push_back(shiny("board white", {1.0, 1.0, 1.0}, 0.5, 0.5, 30.0));
-    scene.materials.push_back(shiny("board grey", {0.5, 0.5, 0.5}, 0.5, 0.5, 30.0));
+    scene.materials.push_back(make_material("board white", {1.0, 1.0, 1.0}, 0.5, 0.5, 0.5, 30.0));
+    scene.materials.push_back(make_material("board grey", {0.5, 0.5, 0.5}, 0.5, 0.5, 0.5, 30.0));
     add_board(scene, vertices, n);
   }
   return scene;

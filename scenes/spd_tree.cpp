@@ -1,7 +1,6 @@
 // SPD tree(n): a bare tree after Aono and Kunii (IEEE CG&A 4(5), 1984): 2^(n + 1) - 1 tapering branches, each
 // with a sphere at its tip, on a field.
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "scenes/spd.h"

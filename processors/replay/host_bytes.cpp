@@ -1,8 +1,6 @@
 #include "processors/replay/host_bytes.h"
 
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "memory/cache.h"
 #include "memory/tags.h"
@@ -11,7 +9,6 @@
 #include "processors/node/build_result.h"
 #include "processors/node/dynamic_cursor.h"
 #include "processors/node/tree_copies.h"
-#include "processors/walk/build_start.h"
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/record_places.h"
@@ -81,12 +78,7 @@ std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConf
   if (!config.count.any() && config.build.sharing == machine::Sharing::given) {
     return bytes;
   }
-  std::optional<walk::TreePlan> plan;
-  if (config.build.sharing != machine::Sharing::given) {
-    std::vector<walk::BranchStart> starts = walk::branch_starts(log.topology, config.build);
-    walk::check_starts(log.topology, starts);
-    plan.emplace(log.topology, std::move(starts), config);
-  }
+  std::optional<walk::TreePlan> plan = walk::tree_plan_of(log, config);
   const memory::Layout layout = walk::layout_of(log, config, plan);
   if (plan) {
     // Counts as of a node above, and one larger cursor for each context.
@@ -94,8 +86,8 @@ std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConf
     bytes += node::TreeCopies::host_bytes(*plan, layout, config) +
              config.all_nodes() * (2 * sizeof(node::BuildCounts) + cursors);
   }
-  const memory::Address end = plan ? plan->end() : layout.end();
-  return bytes + walk::CacheCounting::host_bytes(config, end / config.reference_bytes() + 1);
+  return bytes +
+         walk::CacheCounting::host_bytes(config, walk::memory_lines(config, layout, plan ? &*plan : nullptr));
 }
 
 }  // namespace marti::processors::replay

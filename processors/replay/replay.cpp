@@ -25,17 +25,11 @@ namespace {
 // The plan by which the tree is built; std::nullopt when the tree is given.
 std::optional<walk::TreePlan> plan_of(const program::WorkLog& log, const machine::MachineConfig& config,
                                       const ReplayOptions& options) {
-  if (config.build.sharing == machine::Sharing::given) {
-    if (!options.starts.empty()) {
-      throw sim::UserError("build.sharing: start states of branches need another than \"given\"");
-    }
-    return std::nullopt;
+  std::optional<walk::TreePlan> plan = walk::tree_plan_of(log, config, options.starts);
+  if (!plan && !options.starts.empty()) {
+    throw sim::UserError("build.sharing: start states of branches need another than \"given\"");
   }
-  std::vector<walk::BranchStart> starts =
-      options.starts.empty() ? walk::branch_starts(log.topology, config.build) : options.starts;
-  walk::check_starts(log.topology, starts);
-  walk::TreePlan plan(log.topology, std::move(starts), config);
-  if (config.build.sharing == machine::Sharing::none && !plan.lazy().empty()) {
+  if (config.build.sharing == machine::Sharing::none && !plan->lazy().empty()) {
     throw sim::UserError("build.sharing: \"none\" leaves no branch to be split during the frame");
   }
   return plan;

@@ -6,6 +6,7 @@
 
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/node_caches.h"
+#include "processors/walk/record_places.h"
 #include "processors/walk/replay_input.h"
 
 namespace marti::processors::walk {
@@ -71,9 +72,7 @@ class CountedCaches {
   struct State {
     explicit State(const ReplayInput& input)
         : caches(input.config),
-          counting(input.config, (input.tree != nullptr ? input.tree->end() : input.layout.end()) /
-                                         input.config.reference_bytes() +
-                                     1) {}
+          counting(input.config, memory_lines(input.config, input.layout, input.tree)) {}
     AnyCaches caches;
     CacheCounting counting;
   };

@@ -1,6 +1,7 @@
 #include "processors/walk/record_places.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "memory/set_tags.h"
 #include "processors/walk/node_order.h"
@@ -21,6 +22,23 @@ std::uint64_t node_records(const program::WorkLog& log) {
 }
 
 }  // namespace
+
+std::optional<TreePlan> tree_plan_of(const program::WorkLog& log, const machine::MachineConfig& config,
+                                     std::vector<BranchStart> starts) {
+  if (config.build.sharing == machine::Sharing::given) {
+    return std::nullopt;
+  }
+  if (starts.empty()) {
+    starts = branch_starts(log.topology, config.build);
+  }
+  check_starts(log.topology, starts);
+  return TreePlan(log.topology, std::move(starts), config);
+}
+
+std::uint64_t memory_lines(const machine::MachineConfig& config, const memory::Layout& layout,
+                           const TreePlan* plan) {
+  return (plan != nullptr ? plan->end() : layout.end()) / config.reference_bytes() + 1;
+}
 
 memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
                          std::optional<TreePlan>& plan) {

@@ -12,10 +12,21 @@
 
 namespace marti::processors::walk {
 
+/// The plan by which the tree is built, from the `starts` of its branches or, without any, from those that
+/// the configuration gives (build_start.h); std::nullopt when the tree is given.
+[[nodiscard]] std::optional<TreePlan> tree_plan_of(const program::WorkLog& log,
+                                                   const machine::MachineConfig& config,
+                                                   std::vector<BranchStart> starts = {});
+
 /// The layout of the database's records; sets `plan` to the places of what is built during the frame, behind
 /// them. Throws UserError for a database too large for line numbers.
 [[nodiscard]] memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
                                        std::optional<TreePlan>& plan);
+
+/// The number of lines of memory, or of words of a machine without caches, with what is built; `plan`: null
+/// when the tree is given.
+[[nodiscard]] std::uint64_t memory_lines(const machine::MachineConfig& config, const memory::Layout& layout,
+                                         const TreePlan* plan);
 
 /// The record number of each tree node, or no_record (node_order.h); empty when it is the node number.
 [[nodiscard]] std::vector<std::uint32_t> node_ranks(const program::WorkLog& log,

@@ -210,5 +210,36 @@ TEST(GltfInstances, AreCountedBeforeTheyAreExpanded) {
   EXPECT_EQ(refusal(path, options), "no UserError");
 }
 
+// Files of a few kilobytes whose vertices have no bytes in the file: normals of their own for each primitive,
+// and many morph targets.
+TEST(GltfInstances, VerticesThatSmallFilesDeclareAreCounted) {
+  constexpr int count = 30'000;
+  constexpr int times = 100;
+  const test::TemporaryDirectory directory;
+  const auto declared = [&](GltfFile& file) {
+    file.json["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", count}});
+    return static_cast<int>(file.json["accessors"].size() - 1);
+  };
+  GltfFile normals = GltfFile::square();
+  GltfFile targets = GltfFile::square();
+  for (GltfFile* const file : {&normals, &targets}) {
+    const int positions = declared(*file);
+    file->primitive()["attributes"] = {{"POSITION", positions}, {"NORMAL", declared(*file)}};
+  }
+  for (int i = 0; i < times; ++i) {
+    nlohmann::json primitive = normals.primitive();
+    primitive["attributes"]["NORMAL"] = declared(normals);
+    normals.json["meshes"][0]["primitives"].push_back(primitive);
+    targets.primitive()["targets"].push_back(
+        {{"POSITION", declared(targets)}, {"NORMAL", declared(targets)}});
+  }
+  FileOptions options;
+  options.memory = sim::MemoryBudget(std::uint64_t{64} << 20U);
+  for (const GltfFile* const file : {&normals, &targets}) {
+    const std::string message = refusal(file->write_glb(directory.path(), "a.glb"), options);
+    EXPECT_TRUE(says(message, "its instances take about")) << message;
+  }
+}
+
 }  // namespace
 }  // namespace marti::scenes

@@ -175,7 +175,7 @@ TEST(RoundTrip, RefusesAndLeavesNoHalfFile) {
   EXPECT_NE(refusal(Scene{}, path).find("without triangles"), std::string::npos);
   Scene scene = make_procedural("tetra:1");
   EXPECT_NE(refusal(scene, directory.path() / "missing" / "scene.glb").find("missing"), std::string::npos);
-  scene.textures.push_back({"t", 1, 1, true, true, true, {{0, 0, 0, 0}}});
+  scene.textures.push_back({"t", 1, 1, true, true, true, {{0, 0, 0, 0}}, nullptr});
   EXPECT_NE(refusal(scene, path).find("no image encoder"), std::string::npos);
   scene.textures.clear();
   scene.positions[0].x = 1e39;
