@@ -157,23 +157,17 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::dvec2
   }
   std::vector<std::array<std::uint32_t, 3>> triangles;
   triangles.reserve(corners.size() - 2);
-  // A simple polygon has two ears at least, unless corners on a line hide them (Meisters), so few searches
-  // find none. Their number is limited, because each takes the square of the corners.
-  constexpr int most_vain_searches = 32;
-  const std::size_t none = corners.size();
   Ring ring(corners);
-  int vain_searches = 0;
   while (triangles.size() + 2 < corners.size()) {
     std::size_t ear = ring.best_ear();
-    if (ear == none && vain_searches < most_vain_searches) {
+    if (ear == corners.size()) {
       ring.find_ears();
       ear = ring.best_ear();
-      if (ear == none) {
-        ++vain_searches;
-        ear = ring.flat_corner();
-      }
     }
-    if (ear == none) {
+    if (ear == corners.size()) {
+      ear = ring.flat_corner();
+    }
+    if (ear == corners.size()) {
       throw sim::UserError("a polygon of " + std::to_string(corners.size()) +
                            " corners is not simple or not counter-clockwise");
     }

@@ -25,7 +25,8 @@ namespace marti::scenes {
 
 class PolygonMesh {
  public:
-  /// The time to cut a polygon grows with the square of its corners, so these are limited.
+  /// The time to cut a polygon grows with the square of its corners, of one that crosses itself with their
+  /// cube, so these are limited.
   static constexpr std::size_t most_corners = 1024;
 
   /// Both must outlive this object.
