@@ -16,27 +16,22 @@ namespace {
 // Products of three coordinates must stay far from overflow.
 constexpr double largest_coordinate = 0x1p300;
 
-/// A triangle without area, made one of two corners of which the third is a copy of the first: no ray hits
-/// it, because the kernel's products of equal numbers are equal. Three corners of a line are no longer on one
-/// after the kernel has rounded them. The box stays, up to rounding.
+/// Makes the corner of a triangle without area that lies between the two others a copy of one of these. No
+/// ray hits two equal corners, because the kernel's products of equal numbers are equal; three corners on a
+/// line are no longer on one after the kernel has rounded them. The box stays, up to rounding.
 void make_unhittable(TriangleCorners& corners) {
-  std::size_t axis = 0;
+  std::size_t between = 0;
   double longest = -1.0;
-  std::size_t first = 0;
-  std::size_t last = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto [lo, hi] = std::minmax({corners[a], corners[3 + a], corners[6 + a]});
-    if (hi - lo > longest) {
-      longest = hi - lo;
-      axis = a;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double length = std::abs(corners[3 * ((k + 1) % 3) + a] - corners[3 * ((k + 2) % 3) + a]);
+      if (length > longest) {
+        longest = length;
+        between = k;
+      }
     }
   }
-  for (std::size_t k = 1; k < 3; ++k) {
-    first = corners[3 * k + axis] < corners[3 * first + axis] ? k : first;
-    last = corners[3 * k + axis] > corners[3 * last + axis] ? k : last;
-  }
-  const std::size_t between = first == last ? 2 : 3 - first - last;
-  std::copy_n(&corners[3 * first], 3, &corners[3 * between]);
+  std::copy_n(&corners[3 * ((between + 1) % 3)], 3, &corners[3 * between]);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ if(MARTI_SANITIZE)
   # sanitizer ends the program at a null pointer all the same.
   target_compile_options(marti_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
   if(NOT MARTI_SANITIZE_SCOPES)
-    # A quarter of the time to compile. The long run has it.
+    # This check takes a quarter of the time to compile, so only ./test --full asks for it.
     target_compile_options(marti_options INTERFACE -fno-sanitize-address-use-after-scope)
   endif()
   # Checks of memory as calls instead of inline: a tenth less to compile, for code that is not called often.

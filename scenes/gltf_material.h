@@ -25,7 +25,8 @@ namespace marti::scenes::gltf {
 /// Member `key` of an object as a number; std::nullopt if it is not one.
 [[nodiscard]] std::optional<double> number_in(const tinygltf::Value& object, const char* key);
 
-/// Member `key` of an object as an index, a whole number from 0 to below 1e9; std::nullopt if it is none.
+/// The index that member `key` of an object holds, a whole number from 0 to below 1e9; std::nullopt where
+/// there is no such member or it holds something else.
 [[nodiscard]] std::optional<int> index_in(const tinygltf::Value& object, const char* key);
 
 /// Member `key` of an object as three numbers of `lowest` to `highest`; std::nullopt if it is not that.

@@ -23,11 +23,7 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   const Real height = dot(from_center, axis);  // 0 for a sphere, whose axis is 0
   const Vec3<Real> on_axis = axis * height;
   Vec3<Real> out = from_center - on_axis;
-  Real squared = dot(out, out);
-  if (!in_range(squared)) [[unlikely]] {
-    out = scaled_near_one(out);
-    squared = dot(out, out);
-  }
+  const Real squared = squared_in_range(out);
 
   Surface<Real> surface;
   Vec3<Real> radial;

@@ -87,15 +87,23 @@ Vec3<Real> scaled_near_one(const Vec3<Real>& a) {
   return {scaled(a.x), scaled(a.y), scaled(a.z)};
 }
 
+/// The sum of the squares of a vector's components, which are scaled first where their squares would leave
+/// the format.
+template <typename Real>
+Real squared_in_range(Vec3<Real>& a) {
+  const Real squared = dot(a, a);
+  if (in_range(squared)) [[likely]] {
+    return squared;
+  }
+  a = scaled_near_one(a);
+  return dot(a, a);
+}
+
 /// The vector at length 1, however short or long it is. It must be finite and not zero.
 template <typename Real>
-Vec3<Real> normalized(const Vec3<Real>& a) {
+Vec3<Real> normalized(Vec3<Real> a) {
   using std::sqrt;
-  const Real squared = dot(a, a);
-  if (!in_range(squared)) [[unlikely]] {
-    const Vec3<Real> near_one = scaled_near_one(a);
-    return near_one * (Real(1.0) / sqrt(dot(near_one, near_one)));
-  }
+  const Real squared = squared_in_range(a);
   return a * (Real(1.0) / sqrt(squared));
 }
 

@@ -22,6 +22,7 @@
 #include "studies/sweep/work/coordinator.h"
 #include "studies/sweep/work/sweep_worker.h"
 #include "studies/tables/csv.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies::sweep {
 
@@ -73,7 +74,7 @@ void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
 SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
   std::vector<bool> machines(plan.machines.size());
   std::vector<bool> frames(plan.frames.size());
-  const std::filesystem::path file = options.directory / "results.sqlite";
+  const std::filesystem::path file = options.directory / tables::database_name;
   if (!options.directory.empty() && is_begun(file)) {
     const SweepReader reader(file);
     machines = found_in(reader.machines_done(), plan.machines);
@@ -88,7 +89,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   refuse_large_machines(plan, limit);
   const sim::MadeDirectory made = show::prepare_output(options.directory);
   SweepReport report;
-  report.store = options.directory / "results.sqlite";
+  report.store = options.directory / tables::database_name;
   report.points = options.directory / "points.csv";
   sim::refuse_input(report.points);
   // Nobody else may write the store from its check until the tables that follow from it are written.

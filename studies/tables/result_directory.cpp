@@ -21,7 +21,7 @@ bool is_there(const fs::path& file) {
 
 fs::path results_in(const fs::path& directory, std::string_view expected) {
   const fs::path run = directory / "result.json";
-  const fs::path database = directory / "results.sqlite";
+  const fs::path database = directory / database_name;
   const bool is_run = is_there(run);
   if (is_run && is_there(database)) {
     throw sim::UserError(
@@ -47,7 +47,7 @@ std::optional<PointName> point_named(const std::string& name) {
     return std::nullopt;
   }
   std::error_code ignored;
-  return PointName{name, fs::is_directory(directory, ignored) ? directory / "results.sqlite" : directory,
+  return PointName{name, fs::is_directory(directory, ignored) ? directory / database_name : directory,
                    *ordinal};
 }
 

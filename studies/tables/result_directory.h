@@ -10,6 +10,9 @@
 
 namespace marti::studies::tables {
 
+/// The file of a sweep or study in its directory.
+inline constexpr const char* database_name = "results.sqlite";
+
 /// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 

@@ -18,12 +18,6 @@ namespace marti::studies::tables {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-constexpr const char* database_name = "results.sqlite";
-
-}  // namespace
-
 std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& directory) {
   const host::SignalsHeld held;
   PendingFiles files(directory);
@@ -63,13 +57,12 @@ void refuse_store_of_sweep(const fs::path& directory) {
   } catch (const sim::UserError&) {
     return;  // no database
   }
-  if (application == 0) {
-    return;
+  if (application != 0) {
+    throw sim::UserError(
+        file.string() +
+        ": is the store of a sweep, which a study does not replace; give another directory, or "
+        "remove the file");
   }
-  throw sim::UserError(
-      file.string() +
-      ": is the store of a sweep, which a study does not replace; give another directory, or "
-      "remove the file");
 }
 
 }  // namespace marti::studies::tables

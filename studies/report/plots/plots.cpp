@@ -11,6 +11,7 @@
 #include "studies/report/plots/child_process.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/tables/csv.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies::report {
 
@@ -42,7 +43,7 @@ void check_names(const std::vector<ReportChart>& charts) {
 }
 
 void refuse_results(const fs::path& directory) {
-  for (const char* const file : {"result.json", "results.sqlite"}) {
+  for (const char* const file : {"result.json", tables::database_name}) {
     std::error_code ignored;
     if (fs::exists(directory / file, ignored)) {
       throw sim::UserError(directory.string() + " holds results (" + file +

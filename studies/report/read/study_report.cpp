@@ -186,7 +186,7 @@ bool has_columns(const tables::Table& table, std::span<const std::string_view> n
 }  // namespace
 
 ReportData read_study_report(const fs::path& directory) {
-  const fs::path file = directory / "results.sqlite";
+  const fs::path file = directory / tables::database_name;
   ReportData report;
   report.kind = "study";
   report.title = "Study";
