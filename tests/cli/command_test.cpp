@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/wrong_configurations.h"
@@ -74,9 +73,7 @@ TEST(Command, ARunWritesItsFilesAndTheSameBytesAgain) {
 
 TEST(Command, JsonHoldsTheConservationLaws) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  const Outcome outcome = marti("run --json " + quoted(config) + small_teapot);
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  const nlohmann::json result = nlohmann::json::parse(outcome.output);
+  const nlohmann::json result = printed_json("run " + quoted(config) + small_teapot);
   const nlohmann::json& machine = result["machine"];
   const nlohmann::json& figures = result["figures"]["machine"];
   ASSERT_EQ(machine["per_node"].size(), 16U);
@@ -209,14 +206,12 @@ TEST(Command, AnExportedSceneRendersLikeItsSource) {
   EXPECT_NE(recipe.output.find("polygons"), std::string::npos);
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const std::string size = " --set image.width=24 --set image.height=16 --set scene.source=";
-  const Outcome rendered = marti("run --json " + quoted(config) + size + quoted(file));
-  ASSERT_EQ(rendered.status, 0) << rendered.output;
-  const Outcome original = marti("run --json " + quoted(config) + size + "teapot:2");
   // The file holds single-precision positions, so a few rays at edges may differ, and no more.
-  const auto camera_hits = [](const Outcome& outcome) {
-    return nlohmann::json::parse(outcome.output)["figures"]["frame"]["camera_hits"].get<int>();
+  const auto camera_hits = [&](const std::string& source) {
+    const nlohmann::json result = printed_json("run " + quoted(config) + size + source);
+    return result["figures"]["frame"]["camera_hits"].get<int>();
   };
-  EXPECT_NEAR(camera_hits(rendered), camera_hits(original), 3);
+  EXPECT_NEAR(camera_hits(quoted(file)), camera_hits("teapot:2"), 3);
   EXPECT_EQ(marti("scene export teapot:2 " + quoted(directory.path() / "teapot.obj")).status, 2);
   EXPECT_EQ(marti("scene list").status, 0);
 }
@@ -226,9 +221,8 @@ TEST(Command, FramesOfAnAnimationDiffer) {
   const std::string options =
       " --set image.width=40 --set image.height=30 --set frames.count=1 --set structure.max_level=6";
   const auto hash = [&](const std::string& more) {
-    const Outcome outcome = marti("run --json " + quoted(config) + options + more);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output)["figures"]["frame"]["image_hash"].get<std::string>();
+    const nlohmann::json result = printed_json("run " + quoted(config) + options + more);
+    return result["figures"]["frame"]["image_hash"].get<std::string>();
   };
   const std::string begin = hash("");
   const std::string third = hash(" --set frames.first=3");
@@ -266,11 +260,9 @@ TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
   const fs::path out = directory.path() / "out";
   const std::string run = "run " + quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
                           " --set image.width=24 --set image.height=24 --set scene.source=teapot:6";
-  const auto json_of = [](const Outcome& outcome) { return nlohmann::json::parse(outcome.output); };
   const std::string cut = " --set image.voxel_cut=1";
-  const Outcome both = marti(run + cut + " --set image.voxel_cut_reference=true --json -o " + quoted(out));
-  ASSERT_EQ(both.status, 0) << both.output;
-  const nlohmann::json result = json_of(both);
+  const nlohmann::json result =
+      printed_json(run + cut + " --set image.voxel_cut_reference=true -o " + quoted(out));
   const nlohmann::json& report = result["voxel_cut"];
   EXPECT_GT(report["rays"]["camera"].get<int>(), 0);
   EXPECT_EQ(report["rays"]["shadow"], 0);
@@ -282,9 +274,9 @@ TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
   EXPECT_EQ(figures["machine"]["steps_cuts"], figures["frame"]["log_cuts"]);
   EXPECT_EQ(figures["machine"]["steps_passes"], figures["frame"]["log_passes"]);
 
-  const Outcome exact = marti(run + " --json -o " + quoted(directory.path() / "exact"));
-  EXPECT_TRUE(json_of(exact)["voxel_cut"].is_null());
-  const nlohmann::json whole = json_of(exact)["figures"]["frame"];
+  nlohmann::json exact = printed_json(run + " -o " + quoted(directory.path() / "exact"));
+  EXPECT_TRUE(exact["voxel_cut"].is_null());
+  const nlohmann::json& whole = exact["figures"]["frame"];
   for (const auto& [name, count] : report["exact"]["work_log"].items()) {
     EXPECT_EQ(count, whole["log_" + name]) << name;
   }

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -34,16 +33,7 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
   }
   ASSERT_EQ(marti("study error " + small_errors + " -o " + quoted(b)).status, 0);
-  int compared = 0;
-  for (const auto& entry : fs::directory_iterator(a)) {
-    const std::string name = entry.path().filename().string();
-    ASSERT_TRUE(fs::exists(b / name)) << name;
-    if (!name.starts_with("host") && name != "results.sqlite") {
-      ++compared;
-      EXPECT_EQ(read(a / name), read(b / name)) << name;
-    }
-  }
-  EXPECT_GE(compared, 7);
+  EXPECT_GE(expect_same_files(a, b), 7);
   for (const char* name : {"host_error_time.csv", "error_measured.csv", "host_error_front.vl.json"}) {
     EXPECT_TRUE(fs::exists(a / name)) << name;
   }
@@ -56,10 +46,8 @@ TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
 TEST(StudyError, WrongInputIsTwo) {
   const TemporaryDirectory directory;
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome =
-        marti("study error " + small_errors + " -o " + quoted(directory.path() / "out") + options);
-    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    expect_refused("study error " + small_errors + " -o " + quoted(directory.path() / "out") + options,
+                   complaint);
   };
   refused(" --set error.nodes=[2,4]", "error.nodes");
   refused(" --set error.sides=[]", "error.sides");
@@ -103,9 +91,7 @@ TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
 }
 
 TEST(RunWithin, GivesTheSameToPrograms) {
-  const Outcome wide = marti("run " + machine + "--within 60% --json");
-  ASSERT_EQ(wide.status, 0) << wide.output;
-  const auto json = nlohmann::json::parse(wide.output);
+  const nlohmann::json json = printed_json("run " + machine + "--within 60%");
   const auto& estimate = json["estimate"];
   EXPECT_EQ(estimate["tolerance"], 0.6);
   EXPECT_EQ(json["config"]["keys"]["image.width"]["value"], 448);
@@ -129,9 +115,7 @@ TEST(RunWithin, WrongInputIsTwo) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome = marti("run " + machine + options);
-    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    expect_refused("run " + machine + options, complaint);
   };
   refused("--within ''", "percentage");
   refused("--within 2", "tolerance");

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 
 namespace marti::test {
 namespace {
@@ -15,13 +14,9 @@ namespace fs = std::filesystem;
 
 TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
-  const auto result_of = [&](const fs::path& file) {
-    const Outcome outcome = marti("run --json " + quoted(file) + small_teapot);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output);
-  };
-  const nlohmann::json moving = result_of(config);
-  const nlohmann::json whole = result_of(fs::path(MARTI_SOURCE) / "configs" / "marti.toml");
+  const fs::path image = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
+  const nlohmann::json moving = printed_json("run " + quoted(config) + small_teapot);
+  const nlohmann::json whole = printed_json("run " + quoted(image) + small_teapot);
   EXPECT_EQ(moving["figures"]["frame"], whole["figures"]["frame"]);
   const nlohmann::json& machine = moving["machine"];
   EXPECT_EQ(machine["scheme"], "pipeline");
@@ -46,9 +41,7 @@ TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsSt
 TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
   const auto machine_with = [&](const std::string& stages) {
-    const Outcome outcome = marti("run --json " + quoted(config) + small_teapot + stages);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output);
+    return printed_json("run " + quoted(config) + small_teapot + stages);
   };
   const nlohmann::json few =
       machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
@@ -69,13 +62,8 @@ TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
   for (const char* config : {"marti.toml", "pipeline.toml", "space.toml", "distributed.toml"}) {
     const std::string arguments =
         "run --no-what-helps " + quoted(fs::path(MARTI_SOURCE) / "configs" / config) + small_teapot;
-    const auto figures_of = [&](const std::string& more) {
-      const Outcome outcome = marti(arguments + " --json" + more);
-      EXPECT_EQ(outcome.status, 0) << outcome.output;
-      return nlohmann::json::parse(outcome.output)["figures"]["machine"];
-    };
-    const nlohmann::json without = figures_of("");
-    nlohmann::json with = figures_of(" --set energy.preset=22nm");
+    const nlohmann::json without = printed_json(arguments)["figures"]["machine"];
+    nlohmann::json with = printed_json(arguments + " --set energy.preset=22nm")["figures"]["machine"];
     std::int64_t sum = 0;
     for (const char* part : {"operations", "l1", "l2", "interconnect", "memory", "leakage"}) {
       sum += with["energy_" + std::string(part)].get<std::int64_t>();
@@ -103,9 +91,7 @@ TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
   for (const char* kind : {"mesh", "ideal"}) {
     const std::string options = small_teapot + std::string(" --set network.kind=") + kind;
-    const Outcome outcome = marti("run --json " + quoted(config) + options);
-    ASSERT_EQ(outcome.status, 0) << outcome.output;
-    const nlohmann::json result = nlohmann::json::parse(outcome.output);
+    const nlohmann::json result = printed_json("run " + quoted(config) + options);
     const nlohmann::json& machine = result["machine"];
     const nlohmann::json& figures = result["figures"]["machine"];
     const nlohmann::json& cluster = machine["per_cluster"][0];

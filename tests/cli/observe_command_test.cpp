@@ -5,11 +5,10 @@
 #include <csignal>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -82,12 +81,8 @@ TEST(ObserveCommand, ACriticalPathAddsUpToTheFrameAndChangesNothingElse) {
         observed_run + " --set interconnect.kind=crossbar",
         observed_run + " --set database.placement=distributed", observed_run + " --set build.sharing=shared",
         of_config("pipeline.toml"), of_config("space.toml")}) {
-    const Outcome plain = marti("run " + machine + " --json");
-    ASSERT_EQ(plain.status, 0) << plain.output;
-    const Outcome watched = marti("run " + machine + on + " --json");
-    ASSERT_EQ(watched.status, 0) << watched.output;
-    const auto a = nlohmann::json::parse(plain.output);
-    auto b = nlohmann::json::parse(watched.output);
+    const nlohmann::json a = printed_json("run " + machine);
+    nlohmann::json b = printed_json("run " + machine + on);
     const nlohmann::json found = b["machine"]["critical_path"];
     std::vector<std::string> divisions = {"time_ps", "nodes_ps"};
     if (found["stages_ps"].is_array()) {
@@ -148,11 +143,9 @@ TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
   const TemporaryDirectory directory;
   const std::string options =
       observed_run + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
-  const Outcome run = marti("run " + options + " --json");
-  ASSERT_EQ(run.status, 0) << run.output;
+  const nlohmann::json nodes = printed_json("run " + options)["machine"]["per_node"];
   const Outcome trace = marti("trace " + options + " --format din -o " + quoted(directory.path()));
   ASSERT_EQ(trace.status, 0) << trace.output;
-  const auto nodes = nlohmann::json::parse(run.output)["machine"]["per_node"];
   ASSERT_EQ(nodes.size(), 3U);
   for (std::size_t node = 0; node < 3; ++node) {
     const fs::path file = directory.path() / ("node-0000" + std::to_string(node) + ".din");

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -21,9 +20,7 @@ class PlanCommand : public ::testing::Test {
     return marti("run " + quoted(config_) + " " + arguments);
   }
   [[nodiscard]] nlohmann::json json(const std::string& arguments) const {
-    const Outcome outcome = run("--json " + arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.output;
-    return nlohmann::json::parse(outcome.output);
+    return printed_json("run " + quoted(config_) + " " + arguments);
   }
 
   TemporaryDirectory directory_;

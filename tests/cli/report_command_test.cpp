@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "sim/sha256.h"
 #include "studies/report/plots/vega_bundle.h"
-#include "tests/cli/shell.h"
+#include "tests/cli/printed_json.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -262,9 +261,6 @@ TEST_F(ReportCommand, RefusesWhatIsNoResultAndLeavesThePageAlone) {
 
 TEST_F(ReportCommand, TakesOnlyWhatTheRunHasWritten) {
   const fs::path run = made_run(" --set record.heat_maps=true --set count.working_set=true");
-  const auto says = [](const Outcome& outcome, const std::string& text) {
-    return outcome.output.find(text) != std::string::npos;
-  };
   const Outcome whole = marti("report " + quoted(run));
   ASSERT_EQ(whole.status, 0) << whole.output;
   EXPECT_FALSE(says(whole, "left out")) << whole.output;
@@ -341,9 +337,8 @@ TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
   for (const json& row : data["charts"][0]["spec"]["data"]["values"]) {
     shown += row["ps"].get<std::int64_t>();
   }
-  const Outcome rows =
-      marti("sweep " + quoted(place("sweep.toml")) + " -o " + quoted(sweep) + " --json 2> /dev/null");
-  const json point = json::parse(rows.output)["rows"][3];
+  const json point = printed_json("sweep " + quoted(place("sweep.toml")) + " -o " + quoted(sweep) +
+                                  " 2> /dev/null")["rows"][3];
   EXPECT_EQ(shown, point["end"].get<std::int64_t>() * point["nodes"].get<std::int64_t>());
   expect_refused("report " + quoted(fs::path(sweep.string() + ":99")),
                  "there is no such point; the sweep has 24");

@@ -43,19 +43,12 @@ TEST(RunFiles, AreASet) {
   const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const fs::path out = directory.path() / "out";
   const std::string run = "run " + quoted(config) + small_teapot + " -o " + quoted(out);
-  const auto names = [&] {
-    std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(out)) {
-      found.insert(entry.path().filename().string());
-    }
-    return found;
-  };
   const std::set<std::string> plain = {"image.exr", "image.png", "result.json"};
   const std::string everything =
       " --set count.attribution=true --set count.working_set=true --set record.heat_maps=true"
       " --set record.timeline=true --set image.voxel_cut=1 --set image.voxel_cut_reference=true";
   ASSERT_EQ(marti(run + everything).status, 0);
-  const std::set<std::string> all = names();
+  const std::set<std::string> all = names_in(out);
   EXPECT_EQ(all.size(), 13U) << "every kind of file";
   const auto named = nlohmann::json::parse(read(out / "result.json"))["files"];
   EXPECT_EQ(named.size(), 12U);
@@ -63,7 +56,7 @@ TEST(RunFiles, AreASet) {
     EXPECT_EQ(file["sha256"], sim::sha256_of_file(out / name)) << name;
   }
   ASSERT_EQ(marti(run).status, 0);
-  EXPECT_EQ(names(), plain);
+  EXPECT_EQ(names_in(out), plain);
 
   // Results of an older program, which named no files.
   ASSERT_EQ(marti(run + everything).status, 0);
@@ -71,7 +64,7 @@ TEST(RunFiles, AreASet) {
   old.erase("files");
   write(out / "result.json", old.dump());
   ASSERT_EQ(marti(run).status, 0);
-  EXPECT_EQ(names(), plain);
+  EXPECT_EQ(names_in(out), plain);
 
   // Files that were changed, that the result does not name, or only claims to name, are the user's.
   ASSERT_EQ(marti(run + " --set record.heat_maps=true").status, 0);
@@ -87,8 +80,8 @@ TEST(RunFiles, AreASet) {
   }
   write(out / "result.json", claims.dump());
   ASSERT_EQ(marti(run).status, 0);
-  EXPECT_EQ(names(), (std::set<std::string>{"image.exr", "image.png", "result.json", "heat.exr",
-                                            "heat-waits.png", "timeline.json", "notes.txt"}));
+  EXPECT_EQ(names_in(out), (std::set<std::string>{"image.exr", "image.png", "result.json", "heat.exr",
+                                                  "heat-waits.png", "timeline.json", "notes.txt"}));
   EXPECT_TRUE(fs::exists(directory.path() / "outside"));
 
   // A refusal changes nothing, and a damaged result names nothing.
@@ -96,7 +89,7 @@ TEST(RunFiles, AreASet) {
   EXPECT_EQ(marti(run + " --set cache.size=17").status, 2);
   EXPECT_EQ(read(out / "result.json"), "{");
   ASSERT_EQ(marti(run + " --json").status, 0);
-  EXPECT_EQ(names().size(), 7U);
+  EXPECT_EQ(names_in(out).size(), 7U);
 }
 
 }  // namespace

@@ -33,12 +33,7 @@ TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
     EXPECT_TRUE(fs::exists(a / name)) << name;
   }
   ASSERT_EQ(marti("study schemes " + small_schemes + " -o " + quoted(b)).status, 0);
-  for (const auto& entry : fs::directory_iterator(a)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "results.sqlite") {
-      EXPECT_EQ(read(a / name), read(b / name)) << name;
-    }
-  }
+  expect_same_files(a, b);
 }
 
 TEST(SchemesCommand, StructuresAreShownSideBySide) {
@@ -63,9 +58,7 @@ TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   const TemporaryDirectory directory;
   const std::string out = " -o " + quoted(directory.path() / "out");
   const auto refused = [&](const std::string& options, const std::string& complaint) {
-    const Outcome outcome = marti("study schemes " + small_schemes + out + options);
-    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    expect_refused("study schemes " + small_schemes + out + options, complaint);
   };
   refused(" --set 'schemes.machines=[\"nowhere.toml\"]'", "nowhere.toml");
   refused(" --set 'schemes.machines=[]'", "schemes.machines");

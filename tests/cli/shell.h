@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
+
+#include "tests/support/files.h"
 
 namespace marti::test {
 
@@ -46,19 +46,23 @@ inline void expect_refused(const std::string& arguments, const std::string& word
   EXPECT_PRED_FORMAT2(testing::IsSubstring, words, outcome.output) << arguments;
 }
 
+/// A study wrote the same files with the same bytes into both directories, except for times of the host and
+/// the database. Returns how many files were compared.
+inline int expect_same_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+  int compared = 0;
+  for (const std::string& name : names_in(a)) {
+    EXPECT_TRUE(std::filesystem::exists(b / name)) << name;
+    EXPECT_GT(std::filesystem::file_size(a / name), 0U) << name;
+    if (!name.starts_with("host") && name != "results.sqlite") {
+      ++compared;
+      EXPECT_EQ(read(a / name), read(b / name)) << name;
+    }
+  }
+  return compared;
+}
+
 /// Settings of a run that takes no time.
 inline const std::string small_teapot =
     " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
-
-inline std::string read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-inline void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 }  // namespace marti::test

@@ -39,9 +39,7 @@ TEST(StabilityCommand, RefusesWhatHasNoEffectOrIsOutOfRange) {
   const TemporaryDirectory directory;
   const auto refused = [&](const std::string& options, const std::string& complaint) {
     const fs::path out = directory.path() / "none";
-    const Outcome outcome = marti("study stability -o " + quoted(out) + options);
-    EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    expect_refused("study stability -o " + quoted(out) + options, complaint);
     EXPECT_FALSE(fs::exists(out / "stability.csv"));
   };
   refused(" --set machine.nodes=4", "machine.nodes");

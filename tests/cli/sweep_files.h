@@ -46,12 +46,4 @@ inline Outcome sweep(const std::filesystem::path& config, const std::filesystem:
   return marti("sweep " + quoted(config) + " -o " + quoted(directory) + " --quiet " + more);
 }
 
-inline std::size_t files_in(const std::filesystem::path& directory) {
-  std::size_t files = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(directory)) {
-    ++files;
-  }
-  return files;
-}
-
 }  // namespace marti::test

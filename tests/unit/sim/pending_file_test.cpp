@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include <deque>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <string>
 
 #include "sim/files.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -19,18 +19,10 @@ namespace marti::sim {
 namespace {
 
 namespace fs = std::filesystem;
+using test::names_in;
 using test::TemporaryDirectory;
 using test::user_error_of;
-
-std::set<std::string> names_in(const fs::path& directory) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    names.insert(entry.path().filename().string());
-  }
-  return names;
-}
-
-void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+using test::write;
 
 /// A program that is killed while the file is pending; its temporary name.
 std::string left_by_a_killed_program(const fs::path& target) {

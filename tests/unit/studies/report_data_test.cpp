@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -26,6 +25,7 @@
 #include "studies/tables/csv.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_json.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -40,8 +40,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using test::TemporaryDirectory;
 using test::user_error_of;
-
-void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+using test::write;
 
 TEST(HtmlText, LeavesNoMarkup) {
   EXPECT_EQ(html_text("<b a=\"1\" c='2'>&"), "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;");

@@ -3,13 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "sim/error.h"
 #include "studies/tables/study_files.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::tests {
@@ -19,6 +18,8 @@ namespace fs = std::filesystem;
 using studies::tables::ColumnType;
 using studies::tables::StudyOutput;
 using studies::tables::Table;
+using test::names_in;
+using test::read;
 using test::TemporaryDirectory;
 
 StudyOutput make_output(std::int64_t value) {
@@ -28,21 +29,6 @@ StudyOutput make_output(std::int64_t value) {
   table.add_row({value});
   output.tables.push_back(table);
   return output;
-}
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-std::set<std::string> names_in(const fs::path& directory) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    names.insert(entry.path().filename().string());
-  }
-  return names;
 }
 
 TEST(StudyFiles, AreWhatTheHeaderSays) {
