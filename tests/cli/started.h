@@ -14,8 +14,10 @@ namespace marti::test {
 
 class Started {
  public:
-  /// Runs the program with these arguments; what it prints goes to `output`.
-  Started(std::vector<std::string> arguments, const std::filesystem::path& output) {
+  /// Runs the program with these arguments. What it prints goes to the file `output`, and its standard error
+  /// to the descriptor `errors` if there is one, else to the file too.
+  Started(std::vector<std::string> arguments, const std::filesystem::path& output,
+          int errors = STDOUT_FILENO) {
     arguments.insert(arguments.begin(), MARTI_PROGRAM);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) {
@@ -28,7 +30,7 @@ class Started {
       std::signal(SIGINT, SIG_DFL);
       const int file = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
       dup2(file, STDOUT_FILENO);
-      dup2(file, STDERR_FILENO);
+      dup2(errors, STDERR_FILENO);
       execv(pointers[0], pointers.data());
       _exit(127);
     }

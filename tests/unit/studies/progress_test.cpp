@@ -1,7 +1,6 @@
 // Progress: what a meter says, how its work is stopped, and that a line leaves nothing behind.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "sim/work_meter.h"
 #include "studies/progress/progress_line.h"
 #include "studies/progress/shown_meter.h"
+#include "tests/support/screen.h"
 
 namespace marti::studies {
 
@@ -80,22 +80,6 @@ std::string content_of(std::FILE* file) {
   return text;
 }
 
-// What a terminal of one line shows after these characters.
-std::string screen_after(const std::string& text) {
-  std::string line;
-  std::size_t at = 0;
-  for (const char c : text) {
-    if (c == '\r') {
-      at = 0;
-    } else {
-      line.resize(std::max(line.size(), at + 1), ' ');
-      line[at++] = c;
-    }
-  }
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line;
-}
-
 TEST(ProgressLine, IsDrawnOverAndTakenAway) {
   std::FILE* const out = std::tmpfile();
   std::atomic<int> asked = 0;
@@ -116,8 +100,8 @@ TEST(ProgressLine, IsDrawnOverAndTakenAway) {
   const std::string text = content_of(out);
   std::fclose(out);
   EXPECT_EQ(text.find('\n'), std::string::npos);
-  EXPECT_EQ(screen_after(text.substr(0, text.find("\rshort") + 12)), "short");
-  EXPECT_EQ(screen_after(text), "");
+  EXPECT_EQ(test::screen_after(text.substr(0, text.find("\rshort") + 12)), "short");
+  EXPECT_EQ(test::screen_after(text), "");
   EXPECT_EQ(text.back(), '\r');
   EXPECT_EQ(text.find(std::string(80, 'x')), std::string::npos) << "one line of a terminal of unknown width";
 }
