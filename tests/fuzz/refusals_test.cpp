@@ -1,9 +1,7 @@
 // Wrong configurations, made at random from the schemas: each refusal says where and why.
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <random>
 #include <string>
@@ -25,7 +23,7 @@
 #include "studies/schemes/schemes_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_plan.h"
-#include "tests/support/user_error.h"
+#include "tests/support/files.h"
 #include "tests/support/wrong_configurations.h"
 
 namespace marti::fuzz {
@@ -73,11 +71,6 @@ std::vector<Command> commands() {
            "paper.toml"},
           {studies::schemes::schemes_schema(),
            [](Config& config) { (void)studies::schemes::read_schemes(config); }, "schemes.toml"}};
-}
-
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // Beside the shipped files, of which some name others.
@@ -246,7 +239,7 @@ TEST_F(Refusals, OfValuesOfTheWrongKind) {
   Random random(11);
   int refusals = 0;
   for (const Command& command : commands()) {
-    const std::string shipped = read_file(fs::path(MARTI_SOURCE) / "configs" / command.file);
+    const std::string shipped = test::read(fs::path(MARTI_SOURCE) / "configs" / command.file);
     for (const Key& key : command.schema.keys()) {
       const std::string value = wrong(key, random);
       const std::string bad = wrong_name(key.name, random);
@@ -281,7 +274,7 @@ TEST_F(Refusals, OfValuesThatContradictEachOther) {
     if (command.file.starts_with("sweep")) {
       continue;
     }
-    const std::string shipped = read_file(fs::path(MARTI_SOURCE) / "configs" / command.file);
+    const std::string shipped = test::read(fs::path(MARTI_SOURCE) / "configs" / command.file);
     for (int i = 0; i < 60; ++i) {
       std::vector<std::pair<std::string, std::string>> more;
       Given options{shipped, {}, {}};
@@ -354,16 +347,10 @@ TEST_F(Refusals, OfWhatIsFoundWhileAMachineRuns) {
 
 // Mistakes of people, each with the words that the refusal must have.
 TEST_F(Refusals, OfConfigurationsThatPeopleWrite) {
-  for (const test::WrongConfiguration& wrong : test::wrong_configurations()) {
-    const std::string message = test::user_error_of([&] {
-      Config config = Config::from_text(studies::run::run_schema(), wrong.text, "wrong.toml");
-      (void)studies::run::run(config);
-    });
-    for (const std::string& part : wrong.complaint) {
-      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "says: " << message;
-    }
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
+  test::expect_refusals(test::wrong_configurations(), [](const char* text) {
+    Config config = Config::from_text(studies::run::run_schema(), text, "wrong.toml");
+    (void)studies::run::run(config);
+  });
 }
 
 }  // namespace

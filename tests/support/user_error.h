@@ -7,15 +7,19 @@
 
 namespace marti::test {
 
-/// The message of the UserError that `call` throws, or "no UserError".
-template <class Call>
+/// The message of the UserError, or of the given kind of it, that `call` throws, or "no UserError".
+template <class Error = sim::UserError, class Call>
 std::string user_error_of(Call&& call) {
   try {
     call();
-  } catch (const sim::UserError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "no UserError";
+}
+
+inline bool says(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
 }
 
 }  // namespace marti::test

@@ -1,9 +1,13 @@
-// Configurations of `marti run` that must be refused. tests/fuzz reads them all, tests/cli starts the program
-// with some of them.
+// Configurations that must be refused, and many of `marti run`: tests/fuzz reads them all, tests/cli starts
+// the program with some of them.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
+
+#include "tests/support/user_error.h"
 
 namespace marti::test {
 
@@ -11,6 +15,18 @@ struct WrongConfiguration {
   const char* text;                    ///< of wrong.toml
   std::vector<std::string> complaint;  ///< parts of the message
 };
+
+/// `read` must refuse the text of each with all parts of its complaint, in one line.
+template <class Read>
+void expect_refusals(const std::vector<WrongConfiguration>& cases, const Read& read) {
+  for (const WrongConfiguration& wrong : cases) {
+    const std::string message = user_error_of([&] { read(wrong.text); });
+    for (const std::string& part : wrong.complaint) {
+      EXPECT_PRED_FORMAT2(testing::IsSubstring, part, message) << wrong.text;
+    }
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
 
 inline const std::vector<WrongConfiguration>& wrong_configurations() {
   static const std::vector<WrongConfiguration> all = {

@@ -8,7 +8,7 @@
 #include "processors/cost/operation_mix.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
-#include "sim/error.h"
+#include "tests/support/user_error.h"
 
 namespace marti::processors {
 
@@ -172,13 +172,9 @@ TEST(CostModel, EveryPresetIsThereAndPositive) {
 }
 
 TEST(CostModel, AnUnknownPresetIsRefusedWithTheNamesOfTheOthers) {
-  try {
-    static_cast<void>(cost_preset("mc68000"));
-    FAIL();
-  } catch (const sim::UserError& error) {
-    for (const std::string_view name : cost_presets()) {
-      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
-    }
+  const std::string message = marti::test::user_error_of([] { static_cast<void>(cost_preset("mc68000")); });
+  for (const std::string_view name : cost_presets()) {
+    EXPECT_NE(message.find(name), std::string::npos) << message;
   }
 }
 

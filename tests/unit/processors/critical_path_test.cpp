@@ -18,6 +18,7 @@
 #include "tests/support/naive_pipeline.h"
 #include "tests/support/naive_space.h"
 #include "tests/support/random_flow.h"
+#include "tests/support/user_error.h"
 #include "tests/unit/processors/naive_path.h"
 
 namespace marti::processors {
@@ -482,20 +483,14 @@ TEST(CriticalPath, IsRefusedWhereItDoesNotFitOrIsNotDefined) {
   const WorkLog log = row_of_visits(4);
   MachineConfig machine;
   PathRecorder small(sim::MemoryBudget(1 << 16U, true));
-  try {
-    (void)replay::replay(log, machine, {.observer = &small, .path = &small});
-    FAIL();
-  } catch (const sim::KeyError& error) {
-    EXPECT_NE(std::string(error.what()).find("record.critical_path"), std::string::npos) << error.what();
-  }
+  const auto refusal = [&](PathRecorder& path) {
+    return test::user_error_of<sim::KeyError>(
+        [&] { (void)replay::replay(log, machine, {.observer = &path, .path = &path}); });
+  };
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "record.critical_path", refusal(small));
   // A timeline needs every piece, so leaving it out may be enough.
   PathRecorder unfolded(sim::MemoryBudget(1 << 16U, true), PathPieces::no_fold);
-  try {
-    (void)replay::replay(log, machine, {.observer = &unfolded, .path = &unfolded});
-    FAIL();
-  } catch (const sim::KeyError& error) {
-    EXPECT_NE(std::string(error.what()).find("record.timeline"), std::string::npos) << error.what();
-  }
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "record.timeline", refusal(unfolded));
   machine.banks.dram.emplace().policy = memory::DramPolicy::frfcfs;
   EXPECT_THROW(check_critical_path(machine), sim::KeyError);
 }

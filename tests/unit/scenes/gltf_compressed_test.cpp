@@ -29,6 +29,7 @@ namespace marti::scenes {
 namespace {
 
 using nlohmann::json;
+using test::says;
 using testing::corner;
 using testing::GltfFile;
 using testing::RandomMesh;
@@ -40,10 +41,6 @@ constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 
 std::string refusal(const std::filesystem::path& path) {
   return test::user_error_of([&] { static_cast<void>(load_gltf(path, {}, {})); });
-}
-
-bool says(const std::string& message, const std::string& part) {
-  return message.find(part) != std::string::npos;
 }
 
 using Corners = std::array<std::array<double, 3>, 3>;

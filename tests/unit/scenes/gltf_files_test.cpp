@@ -14,15 +14,12 @@
 namespace marti::scenes {
 namespace {
 
+using test::says;
 using testing::GltfFile;
 
 std::string refusal(const std::filesystem::path& path, const FileOptions& options = {},
                     const ImageDecoder& decode = {}) {
   return test::user_error_of([&] { static_cast<void>(load_gltf(path, options, decode)); });
-}
-
-bool says(const std::string& message, const std::string& part) {
-  return message.find(part) != std::string::npos;
 }
 
 // A scene in a folder, and its buffer where the test wants it.

@@ -15,7 +15,7 @@
 #include "studies/run/functional_run.h"
 #include "studies/run/run_result.h"
 #include "studies/tables/csv.h"
-#include "tests/support/user_error.h"
+#include "tests/support/wrong_configurations.h"
 
 namespace marti::studies {
 
@@ -135,13 +135,8 @@ TEST(Frames, TreesAreSharedUnlessToldOtherwise) {
             processors::machine::Sharing::private_trees);
 }
 
-struct Wrong {
-  std::string text;
-  std::vector<std::string> complaint;
-};
-
 TEST(Frames, WrongConfigurationsAreRefused) {
-  const std::vector<Wrong> cases = {
+  const std::vector<test::WrongConfiguration> cases = {
       {"[frames]\ncount = 0\n", {"frames.toml:2", "frames.count"}},
       {"[frames]\ncount = 2000000\n", {"frames.toml:2", "frames.count"}},
       {"[frames]\ncount = 1000000\n", {"frames.toml:2", "frames.count", "host_machine.memory_limit"}},
@@ -161,12 +156,7 @@ TEST(Frames, WrongConfigurationsAreRefused) {
       {"[scene]\nsource = \"teapott:2\"\n", {"teapot"}},
       {"[host_machine]\nmemory_limit = \"4 MiB\"\n", {"memory_limit"}},
   };
-  for (const Wrong& wrong : cases) {
-    const std::string message = test::user_error_of([&] { run(wrong.text); });
-    for (const std::string& part : wrong.complaint) {
-      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "\n" << message;
-    }
-  }
+  test::expect_refusals(cases, [](const char* text) { run(text); });
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/paper/traced_run.h"
 #include "studies/tables/csv.h"
-#include "tests/support/user_error.h"
+#include "tests/support/wrong_configurations.h"
 
 namespace marti::tests {
 namespace {
@@ -178,13 +178,8 @@ TEST(Claims, SayWhatWasNotMeasured) {
   }
 }
 
-struct Wrong {
-  const char* text;
-  std::vector<std::string> complaint;
-};
-
 TEST(Paper, WrongConfigurationsAreRefused) {
-  const std::vector<Wrong> cases = {
+  const std::vector<test::WrongConfiguration> cases = {
       {"[scene]\nsource = \"tetra:2\"\n", {"paper.toml:2", "scene.source", "paper.run_scenes"}},
       {"[image]\nmax_depth = 3\n", {"paper.toml:2", "image.max_depth"}},
       {"[build]\nsharing = \"shared\"\n", {"paper.toml:2", "build.sharing", "paper.levels"}},
@@ -202,12 +197,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
       {"[paper]\nlevels = [0]\n", {"paper.toml:2", "paper.levels"}},
       {"[paper]\nrules = [-1.0]\n", {"paper.toml:2", "paper.rules"}},
   };
-  for (const Wrong& wrong : cases) {
-    const std::string message = test::user_error_of([&] { run(wrong.text); });
-    for (const std::string& part : wrong.complaint) {
-      EXPECT_NE(message.find(part), std::string::npos) << wrong.text << "\n" << message;
-    }
-  }
+  test::expect_refusals(cases, [](const char* text) { run(text); });
 }
 
 }  // namespace

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "sim/error.h"
 #include "studies/tables/sqlite.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
 
 namespace marti::tests {
 namespace {
@@ -53,13 +53,6 @@ std::vector<std::vector<Cell>> read(const std::filesystem::path& file, const std
   sqlite3_finalize(statement);
   sqlite3_close(connection);
   return rows;
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 std::vector<Table> hostile_tables() {
@@ -105,8 +98,8 @@ TEST(Sqlite, EqualTablesGiveEqualFiles) {
   const TemporaryDirectory directory;
   studies::tables::write_database(directory.path() / "a", hostile_tables());
   studies::tables::write_database(directory.path() / "b", hostile_tables());
-  EXPECT_FALSE(bytes_of(directory.path() / "a").empty());
-  EXPECT_EQ(bytes_of(directory.path() / "a"), bytes_of(directory.path() / "b"));
+  EXPECT_FALSE(test::read(directory.path() / "a").empty());
+  EXPECT_EQ(test::read(directory.path() / "a"), test::read(directory.path() / "b"));
 }
 
 TEST(Sqlite, AFileThatCannotBeWrittenIsTheUsersMatter) {
@@ -114,12 +107,9 @@ TEST(Sqlite, AFileThatCannotBeWrittenIsTheUsersMatter) {
   EXPECT_THROW(studies::tables::write_database(directory.path() / "missing" / "a", hostile_tables()),
                sim::UserError);
   EXPECT_THROW(studies::tables::write_database(directory.path(), hostile_tables()), sim::UserError);
-  try {
-    studies::tables::write_database("/dev/full", hostile_tables());
-    FAIL() << "a full disk was not noticed";
-  } catch (const sim::UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
-  }
+  const std::string full =
+      test::user_error_of([] { studies::tables::write_database("/dev/full", hostile_tables()); });
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "/dev/full", full);
 }
 
 TEST(Sqlite, ATableTwiceIsRefused) {
