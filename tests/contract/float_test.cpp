@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "accel/structure.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/same_bits.h"
 
 namespace marti::tests {
 namespace {
@@ -63,9 +63,8 @@ void compare(std::vector<accel::TriangleCorners> corners, std::uint64_t seed,
       hits += expected.found() ? 1U : 0U;
       for (const auto& structure : all) {
         accel::visit_structure(*structure, [&](const auto& concrete) {
-          const Hit got = concrete.template closest<float>(ray, visitor);
-          ASSERT_EQ(expected.primitive, got.primitive) << structure->kind();
-          ASSERT_EQ(std::bit_cast<std::uint64_t>(expected.t), std::bit_cast<std::uint64_t>(got.t));
+          ASSERT_TRUE(test::same_bits(expected, concrete.template closest<float>(ray, visitor)))
+              << structure->kind();
           ASSERT_EQ(expected.found(), concrete.template occluded<float>(ray, visitor));
         });
       }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -21,6 +20,7 @@
 #include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
 #include "tests/support/long_tests.h"
+#include "tests/support/same_bits.h"
 
 namespace marti::tests {
 namespace {
@@ -95,18 +95,6 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles
   return all;
 }
 
-::testing::AssertionResult same_bits(const Hit& expected, const Hit& got) {
-  const auto same = [](double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-  };
-  if (expected.primitive == got.primitive && same(expected.t, got.t) && same(expected.u, got.u) &&
-      same(expected.v, got.v) && same(expected.w, got.w)) {
-    return ::testing::AssertionSuccess();
-  }
-  return ::testing::AssertionFailure() << "expected triangle " << expected.primitive << " at " << expected.t
-                                       << ", got " << got.primitive << " at " << got.t;
-}
-
 /// The same hits with mailboxes, and no more tests.
 void compare_with_mailboxes(Built& built, const Ray& ray, const Hit& expected) {
   accel::visit_structure(*built.structure, [&](const auto& concrete) {
@@ -115,7 +103,7 @@ void compare_with_mailboxes(Built& built, const Ray& ray, const Hit& expected) {
     TestCounter without;
     with.tests = 0;
     static_cast<void>(concrete.closest(ray, without));
-    EXPECT_TRUE(same_bits(expected, concrete.closest(ray, with)));
+    EXPECT_TRUE(test::same_bits(expected, concrete.closest(ray, with)));
     EXPECT_LE(with.tests, without.tests);
     with.tests = 0;
     without.tests = 0;
@@ -151,7 +139,7 @@ std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corne
                << ray.direction.y << " " << ray.direction.z << " t " << ray.t_min << " " << ray.t_max;
           return text.str();
         };
-        EXPECT_TRUE(same_bits(expected, built.structure->closest(ray))) << where();
+        EXPECT_TRUE(test::same_bits(expected, built.structure->closest(ray))) << where();
         EXPECT_EQ(expected.found(), built.structure->occluded(ray)) << where();
         if (k % 16 == 0) {
           SCOPED_TRACE(where());
@@ -268,7 +256,7 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
         ray.t_max = std::ldexp(ray.t_max, power);
         Hit got = structure->closest(ray);
         got.t = std::ldexp(got.t, -power);
-        ASSERT_TRUE(same_bits(expected, got)) << kind << ", 2^" << power;
+        ASSERT_TRUE(test::same_bits(expected, got)) << kind << ", 2^" << power;
       }
     }
   }

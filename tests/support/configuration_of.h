@@ -12,6 +12,8 @@
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "sim/units.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 
 namespace marti::test {
@@ -190,6 +192,18 @@ inline std::vector<std::string> assignments_of(const processors::machine::Machin
     assign_dram(*machine.banks.dram, assignments);
   }
   return assignments.take();
+}
+
+/// The machine that a configuration describes.
+inline processors::machine::MachineConfig read_machine_of(const std::string& text,
+                                                          const std::vector<std::string>& assignments = {}) {
+  sim::Schema schema;
+  studies::keys::declare_frame_keys(schema);
+  studies::keys::declare_machine_keys(schema);
+  sim::Config config = sim::Config::from_text(schema, text, "machine.toml", assignments);
+  processors::machine::MachineConfig machine = studies::keys::read_machine(config);
+  config.refuse_unused();
+  return machine;
 }
 
 inline sim::Config configuration_of(const std::vector<std::string>& assignments) {

@@ -1,8 +1,9 @@
-// Words of a log: that of a ray, the samples of a pixel, and the tests, found the simple way.
+// Words of a log: that of a ray, the samples of a pixel, the branches and the tests, found the simple way.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,20 @@ inline std::vector<std::span<const std::uint32_t>> samples_of_pixel(const proces
     samples.push_back(words.subspan(begins[i - 1], begins[i] - begins[i - 1]));
   }
   return samples;
+}
+
+/// The branches that rays visit.
+inline std::set<std::uint32_t> visited_branches(const processors::program::WorkLog& log) {
+  using namespace processors::program;
+  std::set<std::uint32_t> branches;
+  for (const LogRow& row : log.rows) {
+    for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
+      if (step_of(row.words[at]) == Step::branch) {
+        branches.insert(operand_of(row.words[at]));
+      }
+    }
+  }
+  return branches;
 }
 
 /// Tests of each accel::PrimitiveKind, one by one.

@@ -165,13 +165,7 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
   const double size = glm::length(boxes[0].hi - boxes[0].lo);
   // A quantised box may reach a 255th of its parent farther.
   const double wide = GetParam() == BvhNodeKind::eight_quantised ? 1.0 : 1e-4;
-  std::vector<std::uint32_t> parent(boxes.size(), 0);
-  for (std::uint32_t n = 0; n < boxes.size(); ++n) {
-    const TopologyNode& node = bvh.topology().nodes[n];
-    for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
-      parent[node.first + child] = n;
-    }
-  }
+  const std::vector<std::uint32_t> parent = parents_of(bvh.topology().nodes);
   RayMaker maker(bvh.triangles(), bvh.bounds(), 6);
   std::uint64_t leaves = 0;
   for (int k = 0; k < 3000; ++k) {

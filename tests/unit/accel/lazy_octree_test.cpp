@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstdint>
 #include <memory>
 #include <thread>
@@ -16,6 +15,7 @@
 #include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/same_bits.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/accel/tree_check.h"
 #include "tests/unit/accel/walk_check.h"
@@ -32,12 +32,6 @@ using accel::Octree;
 using accel::OctreeBuild;
 using accel::Ray;
 using accel::TriangleSet;
-
-bool same_hit(const Hit& a, const Hit& b) {
-  return a.primitive == b.primitive &&
-         std::bit_cast<std::uint64_t>(a.t) == std::bit_cast<std::uint64_t>(b.t) &&
-         std::bit_cast<std::uint64_t>(a.u) == std::bit_cast<std::uint64_t>(b.u);
-}
 
 accel::BuildLimit any_limit() {
   accel::BuildLimit limit;
@@ -123,7 +117,7 @@ RC_GTEST_PROP(LazyTree, AnyRaysOnAnyThreadsGiveTheEagerTreesHitsAndNodes, ()) {
     for (int k = 0; k < rays; ++k) {
       const Ray ray = maker.make(
           studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
-      different += same_hit(lazy.closest(ray, visitor), eager.closest(ray, visitor)) ? 0 : 1;
+      different += test::same_bits(lazy.closest(ray, visitor), eager.closest(ray, visitor)) ? 0 : 1;
       different += lazy.occluded(ray, visitor) == eager.occluded(ray, visitor) ? 0 : 1;
     }
   };
@@ -185,7 +179,7 @@ TEST(LazyTree, IsAStructure) {
   for (int k = 0; k < 4000; ++k) {
     const Ray ray = maker.make(
         studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
-    ASSERT_TRUE(same_hit(lazy->closest(ray), brute->closest(ray)));
+    ASSERT_TRUE(test::same_bits(lazy->closest(ray), brute->closest(ray)));
     ASSERT_EQ(lazy->occluded(ray), brute->occluded(ray));
   }
   EXPECT_EQ(accel::visit_structure(*lazy, [](const auto& concrete) { return concrete.kind_name; }),

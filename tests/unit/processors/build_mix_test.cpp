@@ -12,6 +12,7 @@
 #include "processors/replay/replay.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
+#include "tests/support/logged_samples.h"
 
 namespace marti::processors {
 
@@ -84,14 +85,7 @@ TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
     const test::Built built(scenes::make_procedural("teapot:4"), kind);
     const Frame frame = built.render({.width = 48, .height = 48, .max_depth = 2, .record = true});
     const WorkLog& log = *frame.log;
-    std::set<std::uint32_t> visited;
-    for (const LogRow& row : log.rows) {
-      for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
-        if (step_of(row.words[at]) == Step::branch) {
-          visited.insert(operand_of(row.words[at]));
-        }
-      }
-    }
+    const std::set<std::uint32_t> visited = marti::test::visited_branches(log);
     MachineConfig machine;
     machine.clock = sim::Clock::from_hertz(100e6);
     machine.build = {Sharing::shared, InitialTree::level, 1, 10.0};

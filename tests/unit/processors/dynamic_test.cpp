@@ -10,9 +10,10 @@
 #include "processors/cost/step_time.h"
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay.h"
-#include "sim/error.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/logged_samples.h"
 #include "tests/support/random_machine.h"
+#include "tests/support/user_error.h"
 
 namespace marti::processors {
 
@@ -75,19 +76,6 @@ RC_GTEST_PROP(Dynamic, AFullInitialTreeIsBuildingBeforehandHoweverItIsShared, (s
   }
 }
 
-// Branches that rays visit, and all of them.
-std::set<std::uint32_t> visited_branches(const WorkLog& log) {
-  std::set<std::uint32_t> branches;
-  for (const LogRow& row : log.rows) {
-    for (std::size_t at = 0; at < row.words.size(); at += step_words(row.words.data() + at)) {
-      if (step_of(row.words[at]) == Step::branch) {
-        branches.insert(operand_of(row.words[at]));
-      }
-    }
-  }
-  return branches;
-}
-
 RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_tree_log(random, 8, 8);
@@ -100,7 +88,7 @@ RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes,
   // A lazy branch is there when its parent is split, and split when a ray visits it.
   std::vector<std::int64_t> splits(256);
   std::vector<std::int64_t> partial(256);
-  const std::set<std::uint32_t> visited = visited_branches(log);
+  const std::set<std::uint32_t> visited = test::visited_branches(log);
   std::vector<bool> there(starts.size(), true);
   for (std::uint32_t number = 0; number < starts.size(); ++number) {
     const accel::TopologyNode& node = log.topology.nodes[number];
@@ -353,13 +341,9 @@ TEST(Dynamic, RefusesWhatHasNoTreeToBuild) {
   log.rows = test::random_tree_log(random, 3, 3).rows;
   MachineConfig machine;
   machine.build.sharing = Sharing::shared;
-  const auto refused = [&](const ReplayOptions& options, std::string_view why) {
-    try {
-      (void)replay::replay(log, machine, options);
-      FAIL() << "not refused: " << why;
-    } catch (const sim::UserError& error) {
-      EXPECT_NE(std::string_view(error.what()).find(why), std::string_view::npos) << error.what();
-    }
+  const auto refused = [&](const ReplayOptions& options, const std::string& why) {
+    const std::string message = test::user_error_of([&] { (void)replay::replay(log, machine, options); });
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, why, message);
   };
   refused({}, "build.sharing: only an octree");
   machine.placement = Placement::replicated;

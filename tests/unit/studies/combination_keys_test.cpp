@@ -5,11 +5,9 @@
 #include <array>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "processors/machine/combinations.h"
-#include "studies/keys/frame_keys.h"
-#include "studies/keys/machine_keys.h"
+#include "tests/support/configuration_of.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
@@ -20,6 +18,7 @@ namespace {
 
 using processors::machine::Feature;
 using processors::machine::RefusedPair;
+using test::read_machine_of;
 
 // What asks for each feature: a value of a key, and a key in the file that has no use without it.
 struct Asked {
@@ -40,24 +39,14 @@ const Asked& asked_of(Feature feature) { return asked[static_cast<std::size_t>(f
 
 std::string line_of(const Asked& one) { return one.key + " = " + one.value + "\n"; }
 
-processors::machine::MachineConfig read(const std::string& text,
-                                        const std::vector<std::string>& assignments = {}) {
-  sim::Schema schema;
-  declare_frame_keys(schema);
-  declare_machine_keys(schema);
-  sim::Config config = sim::Config::from_text(schema, text, "machine.toml", assignments);
-  const processors::machine::MachineConfig machine = read_machine(config);
-  config.refuse_unused();
-  return machine;
-}
-
 // What a run compares with, and what a sweep reads anew as the machine that it compares with.
 TEST(CombinationKeys, SpaceIsComparedWithTheOneNodeThatItsKeysDescribe) {
   for (const std::string cache : {"line = \"16 B\"", "line = \"64 B\"", "organisation = \"none\""}) {
     const std::string common = "[cache]\n" + cache + "\n[machine]\n";
-    const processors::machine::MachineConfig space = read(common + "scheme = \"space\"\nnodes = 4\n");
+    const processors::machine::MachineConfig space =
+        read_machine_of(common + "scheme = \"space\"\nnodes = 4\n");
     const processors::machine::MachineConfig one =
-        read(common + "nodes = 1\n[database]\nplacement = \"replicated\"\n");
+        read_machine_of(common + "nodes = 1\n[database]\nplacement = \"replicated\"\n");
     const processors::machine::MachineConfig compared = processors::machine::one_node_of(space);
     EXPECT_EQ(compared.banks.interleave, one.banks.interleave) << cache;
     EXPECT_EQ(compared.reference_bytes(), one.reference_bytes()) << cache;
@@ -71,13 +60,13 @@ TEST(CombinationKeys, AFileThatAsksForBothIsRefusedAtTheLineOfTheFirst) {
   for (const RefusedPair& pair : processors::machine::refused_pairs()) {
     const Asked& first = asked_of(pair.first);
     const Asked& second = asked_of(pair.second);
-    const std::string message =
-        test::user_error_of([&] { (void)read("machine.nodes = 16\n" + line_of(second) + line_of(first)); });
+    const std::string message = test::user_error_of(
+        [&] { (void)read_machine_of("machine.nodes = 16\n" + line_of(second) + line_of(first)); });
     EXPECT_TRUE(message.starts_with("machine.toml:3: " + first.key + ": " + first.value +
                                     " does not combine with " + second.key + " = " + second.value))
         << message;
     const std::string assigned = test::user_error_of([&] {
-      (void)read("", {assignment(first), assignment(second)});
+      (void)read_machine_of("", {assignment(first), assignment(second)});
     });
     EXPECT_NE(assigned.find("does not combine"), std::string::npos) << assigned;
   }
@@ -88,14 +77,14 @@ TEST(CombinationKeys, OnlyAnotherSchemeSwitchesOffWhatTheFileAsksFor) {
     for (const auto& [on, off] : {std::pair(pair.first, pair.second), std::pair(pair.second, pair.first)}) {
       SCOPED_TRACE(asked_of(on).key + ", " + asked_of(off).key);
       const std::string file = "machine.nodes = 16\n" + line_of(asked_of(off)) + asked_of(off).more + "\n";
-      EXPECT_TRUE(processors::machine::has(read(file), off));
+      EXPECT_TRUE(processors::machine::has(read_machine_of(file), off));
       if (on != Feature::moving_rays) {
         const std::string message =
-            test::user_error_of([&] { (void)read(file, {assignment(asked_of(on))}); });
+            test::user_error_of([&] { (void)read_machine_of(file, {assignment(asked_of(on))}); });
         EXPECT_NE(message.find("does not combine"), std::string::npos) << message;
         continue;
       }
-      const processors::machine::MachineConfig machine = read(file, {assignment(asked_of(on))});
+      const processors::machine::MachineConfig machine = read_machine_of(file, {assignment(asked_of(on))});
       EXPECT_TRUE(processors::machine::has(machine, on));
       EXPECT_FALSE(processors::machine::has(machine, off));
     }

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "processors/energy/energy_presets.h"
-#include "studies/keys/frame_keys.h"
-#include "studies/keys/machine_keys.h"
+#include "tests/support/configuration_of.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
@@ -15,16 +14,7 @@ using namespace keys;
 
 namespace {
 
-processors::machine::MachineConfig read_machine_of(const std::string& text,
-                                                   const std::vector<std::string>& assignments = {}) {
-  sim::Schema schema;
-  declare_frame_keys(schema);
-  declare_machine_keys(schema);
-  sim::Config config = sim::Config::from_text(schema, text, "machine.toml", assignments);
-  processors::machine::MachineConfig machine = read_machine(config);
-  config.refuse_unused();
-  return machine;
-}
+using test::read_machine_of;
 
 TEST(EnergyKeys, AreOffByDefault) {
   const processors::machine::MachineConfig machine = read_machine_of("");
