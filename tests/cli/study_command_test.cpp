@@ -42,9 +42,7 @@ TEST(Study, ReplacesNoSweep) {
   const std::string out = " -o " + quoted(directory.path() / "out");
   const std::string sweep = "sweep " + quoted(config) + " --axis machine.nodes=1,2 --quiet" + out;
   ASSERT_EQ(marti(sweep).status, 0);
-  const Outcome refused = marti("study operations " + quoted(config) + out);
-  EXPECT_EQ(refused.status, 2) << refused.output;
-  EXPECT_TRUE(says(refused, "results.sqlite: is the store of a sweep")) << refused.output;
+  expect_refused("study operations " + quoted(config) + out, "results.sqlite: is the store of a sweep");
   EXPECT_TRUE(says(marti(sweep), "2 done")) << "the sweep's points stay";
 }
 

@@ -15,6 +15,7 @@
 #include "scenes/open.h"
 #include "sim/error.h"
 #include "sim/key_error.h"
+#include "tests/support/user_error.h"
 
 namespace marti::scenes {
 namespace {
@@ -248,13 +249,8 @@ TEST(Procedural, MemoryIsEstimatedBeforeASceneIsMade) {
 }
 
 TEST(Procedural, RefusesWithAReason) {
-  const auto reason = [](const std::string& spec) -> std::string {
-    try {
-      static_cast<void>(make_procedural(spec));
-    } catch (const sim::UserError& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto reason = [](const std::string& spec) {
+    return test::user_error_of([&] { static_cast<void>(make_procedural(spec)); });
   };
   EXPECT_NE(reason("taepot:3").find("teapot"), std::string::npos);
   EXPECT_NE(reason("taepot:3").find("did you mean"), std::string::npos);

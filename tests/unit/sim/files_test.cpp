@@ -6,24 +6,21 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "sim/made_directory.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
 namespace marti::sim {
 namespace {
 
+using test::names_in;
 using test::TemporaryDirectory;
 using test::user_error_of;
-
-std::size_t entries_in(const std::filesystem::path& directory) {
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory), {}));
-}
 
 TEST(Files, WhatIsWrittenIsRead) {
   const TemporaryDirectory directory;
@@ -38,7 +35,7 @@ TEST(Files, WhatIsWrittenIsRead) {
     write_file(file, "", durability);
     EXPECT_EQ(read_file(file, 300'000), "");
   }
-  EXPECT_EQ(entries_in(directory.path()), 1U);
+  EXPECT_EQ(names_in(directory.path()).size(), 1U);
 }
 
 TEST(Files, ALongFileIsRefused) {
@@ -75,7 +72,7 @@ TEST(Files, WhatCannotBeWrittenSaysWhyAndLeavesNothing) {
             directory.path().string() + ": cannot be written: Is a directory");
   EXPECT_THROW(write_file("", "x"), UserError);
   EXPECT_THROW(write_file(directory.path() / std::string(300, 'n'), "x"), UserError);
-  EXPECT_EQ(entries_in(directory.path()), 0U);
+  EXPECT_EQ(names_in(directory.path()).size(), 0U);
 }
 
 TEST(Files, AFullDiskLeavesTheOldFile) {
@@ -94,7 +91,7 @@ TEST(Files, AFullDiskLeavesTheOldFile) {
   (void)std::signal(SIGXFSZ, handler);
   EXPECT_EQ(message, file.string() + ": cannot be written: File too large");
   EXPECT_EQ(read_file(file, 10), "old");
-  EXPECT_EQ(entries_in(directory.path()), 1U);
+  EXPECT_EQ(names_in(directory.path()).size(), 1U);
 }
 
 TEST(Files, ALinkIsReplacedAndNotFollowed) {
@@ -126,7 +123,7 @@ TEST(Files, ManyWritersOfOneFileNeverMix) {
   for (std::thread& writer : writers) {
     writer.join();
   }
-  EXPECT_EQ(entries_in(directory.path()), 1U);
+  EXPECT_EQ(names_in(directory.path()).size(), 1U);
 }
 
 TEST(MadeDirectory, IsMadeWithItsParentsAndStaysWhenItHoldsSomething) {
@@ -147,19 +144,19 @@ TEST(MadeDirectory, LeavesNothingBehindWhereNothingWasWritten) {
   const TemporaryDirectory directory;
   for (const char* name : {"a", "a/b/c", "a/", "a/../b", "./a/./b"}) {
     { const MadeDirectory made(directory.path() / name); }
-    EXPECT_EQ(entries_in(directory.path()), 0U) << name;
+    EXPECT_EQ(names_in(directory.path()).size(), 0U) << name;
   }
   std::filesystem::create_directory(directory.path() / "there");
   { const MadeDirectory made(directory.path() / "there"); }
   { const MadeDirectory made(directory.path() / "there" / "new"); }
   EXPECT_TRUE(std::filesystem::is_directory(directory.path() / "there")) << "it was there before";
-  EXPECT_EQ(entries_in(directory.path() / "there"), 0U);
+  EXPECT_EQ(names_in(directory.path() / "there").size(), 0U);
   {
     MadeDirectory made(directory.path() / "moved");
     const MadeDirectory other(std::move(made));
     EXPECT_TRUE(std::filesystem::is_directory(directory.path() / "moved"));
   }
-  EXPECT_EQ(entries_in(directory.path()), 1U);
+  EXPECT_EQ(names_in(directory.path()).size(), 1U);
 }
 
 }  // namespace

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/error.h"
 #include "sim/files.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/plots/child_process.h"
 #include "studies/report/plots/vega_bundle.h"
+#include "tests/support/user_error.h"
 
 namespace marti::studies {
 
@@ -24,20 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
+using test::user_error_of;
 
 ChildProcess shell(const std::string& script, std::chrono::seconds limit = 20s) {
   return {{"sh", "-c", script}, "dash", {}, limit};
-}
-
-/// The message of the error instead of a result.
-template <typename Function>
-std::string refusal(Function function) {
-  try {
-    function();
-  } catch (const sim::UserError& error) {
-    return error.what();
-  }
-  return "no refusal";
 }
 
 TEST(ChildProcess, GivesItsOutputForItsInput) {
@@ -57,16 +47,16 @@ TEST(ChildProcess, HasTheEnvironmentWithWhatIsAdded) {
 }
 
 TEST(ChildProcess, HearsSignals) {
-  EXPECT_THAT(refusal([] { run_child(shell("kill -INT $$; sleep 20"), ""); }),
+  EXPECT_THAT(user_error_of([] { run_child(shell("kill -INT $$; sleep 20"), ""); }),
               HasSubstr("sh was ended by signal 2"));
 }
 
 TEST(ChildProcess, ThatFailsSaysWhy) {
-  EXPECT_EQ(refusal([] { run_child(shell("echo out; echo bad luck >&2; exit 3"), ""); }),
+  EXPECT_EQ(user_error_of([] { run_child(shell("echo out; echo bad luck >&2; exit 3"), ""); }),
             "sh failed with status 3: bad luck");
-  EXPECT_THAT(refusal([] { run_child(shell("exit 3"), ""); }), HasSubstr("says nothing"));
+  EXPECT_THAT(user_error_of([] { run_child(shell("exit 3"), ""); }), HasSubstr("says nothing"));
   EXPECT_EQ(
-      refusal([] {
+      user_error_of([] {
         run_child({{"marti-no-such-program"}, "some-package", {}, 20s}, "");
       }),
       "marti-no-such-program is needed for this and cannot be started: No such file or directory (Debian "
@@ -74,10 +64,11 @@ TEST(ChildProcess, ThatFailsSaysWhy) {
 }
 
 TEST(ChildProcess, IsEndedWhenItTakesTooLongOrWritesTooMuch) {
-  EXPECT_THAT(refusal([] { run_child(shell("exec sleep 60", 1s), ""); }), HasSubstr("longer than 1 seconds"));
-  EXPECT_THAT(refusal([] { run_child(shell("exec >&- 2>&-; exec sleep 60", 1s), ""); }),
+  EXPECT_THAT(user_error_of([] { run_child(shell("exec sleep 60", 1s), ""); }),
               HasSubstr("longer than 1 seconds"));
-  EXPECT_THAT(refusal([] {
+  EXPECT_THAT(user_error_of([] { run_child(shell("exec >&- 2>&-; exec sleep 60", 1s), ""); }),
+              HasSubstr("longer than 1 seconds"));
+  EXPECT_THAT(user_error_of([] {
                 run_child({{"yes"}, "coreutils", {}, 20s}, "", 1000);
               }),
               HasSubstr("wrote more than"));
@@ -124,7 +115,8 @@ class Plots : public testing::Test {
   void TearDown() override { fs::remove_all(directory_); }
 
   [[nodiscard]] std::string drawing(const std::vector<ReportChart>& charts) const {
-    return refusal([&] { static_cast<void>(draw_plots(report_of(charts), directory_, /*pdf=*/false)); });
+    return user_error_of(
+        [&] { static_cast<void>(draw_plots(report_of(charts), directory_, /*pdf=*/false)); });
   }
 
   fs::path directory_;

@@ -9,13 +9,13 @@
 
 #include "accel/structure.h"
 #include "scenes/procedural.h"
-#include "sim/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/error/rendering.h"
 #include "studies/error/rendering_tables.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/text_table.h"
+#include "tests/support/user_error.h"
 
 namespace marti::studies {
 
@@ -242,16 +242,13 @@ sim::Config config_of(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
+  return test::user_error_of([&] {
     sim::Config config = config_of(text);
     const FrameConfig frame = read_frame(config);
     (void)read_rendering_error(config, frame);
     (void)read_machine(config);
     config.refuse_unused();
-  } catch (const sim::UserError& error) {
-    return error.what();
-  }
-  return {};
+  });
 }
 
 TEST(RenderingErrorKeys, AreReadSortedAndRefusedWithFileLineAndKey) {
@@ -261,7 +258,7 @@ TEST(RenderingErrorKeys, AreReadSortedAndRefusedWithFileLineAndKey) {
   EXPECT_EQ(options.samples, (std::vector<std::uint32_t>{2, 8}));
   EXPECT_EQ(options.weights, (std::vector<double>{0.1, 0.5}));
   EXPECT_EQ(options.reference_samples, 1024U);
-  EXPECT_EQ(refusal(""), "");
+  EXPECT_EQ(refusal(""), "no UserError");
   const auto expect = [](const std::string& text, const std::string& key, const std::string& reason) {
     const std::string message = refusal(text);
     EXPECT_NE(message.find("error.toml:2"), std::string::npos) << message;
