@@ -23,7 +23,6 @@
 namespace marti::tests {
 namespace {
 
-using accel::Hit;
 using accel::LazyOctree;
 using accel::LazyOctreeOptions;
 using accel::LazyOctreeState;

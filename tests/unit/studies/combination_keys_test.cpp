@@ -11,9 +11,6 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
-
-using namespace keys;
-
 namespace {
 
 using processors::machine::Feature;

@@ -9,9 +9,6 @@
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
-
-using namespace keys;
-
 namespace {
 
 using test::read_machine_of;
