@@ -105,6 +105,9 @@ class PrimitiveDecompressor {
 
   /// Checks the accessors and sums up what they declare.
   [[nodiscard]] DracoCounts expect(const tinygltf::Value& attributes) const {
+    if (primitive_.indices < 0) {
+      fail("need an accessor for indices, which the primitive does not have");
+    }
     const tinygltf::Accessor& indices = empty_accessor(primitive_.indices);
     const std::uint64_t most = model_.options().max_triangles;
     if (indices.count == 0 || indices.count % 3 != 0 || indices.count / 3 > most) {

@@ -44,6 +44,8 @@ std::string meshopt_among(const tinygltf::ExtensionMap& extensions) {
   return {};
 }
 
+bool is_compression(const std::string& extension) { return extension == draco || is_meshopt(extension); }
+
 std::string why_unsupported(const std::string& extension) {
   if (extension == draco && !has_draco()) {
     return "for which marti was built without the library Draco (Debian's libdraco-dev)";

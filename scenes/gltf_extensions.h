@@ -14,6 +14,9 @@ inline constexpr std::array<const char*, 2> meshopt_names = {"EXT_meshopt_compre
 /// Which of meshopt_names is among the extensions; empty if none is.
 [[nodiscard]] std::string meshopt_among(const tinygltf::ExtensionMap& extensions);
 
+/// Whether an extension says that data are compressed: KHR_draco_mesh_compression, or one of meshopt_names.
+[[nodiscard]] bool is_compression(const std::string& extension);
+
 /// Why an extension cannot be read: "not supported", or that marti was built without the library for it.
 [[nodiscard]] std::string why_unsupported(const std::string& extension);
 

@@ -34,19 +34,20 @@ void MeshReader::add(std::size_t place, Pose& pose) {
     }
   }
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    const tinygltf::Primitive& primitive = mesh.primitives[i];
+    if (primitive.mode >= TINYGLTF_MODE_POINTS && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+      left_out_.features["primitives of points or lines"] += 1;
+      continue;
+    }
     const std::string name = "mesh " + std::to_string(node.mesh) + ", primitive " + std::to_string(i);
-    add_primitive(mesh.primitives[i], pose, name, user);
+    add_primitive(primitive, pose, name, user);
   }
 }
 
 void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose& pose,
                                const std::string& name, User& user) {
-  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     model_.fail(name + ": there is no primitive mode " + std::to_string(primitive.mode));
-  }
-  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-    left_out_.features["primitives of points or lines"] += 1;
-    return;
   }
   if (attribute(primitive.attributes, "POSITION") < 0) {
     left_out_.features["primitives without positions"] += 1;

@@ -75,9 +75,15 @@ class ViewDecompressor {
     return static_cast<std::uint64_t>(value);
   }
 
-  static std::string text(const tinygltf::Value& extension, const char* key, const char* otherwise) {
-    return extension.Has(key) && extension.Get(key).IsString() ? extension.Get(key).Get<std::string>()
-                                                               : otherwise;
+  [[nodiscard]] std::string text(const tinygltf::Value& extension, const char* key,
+                                 const char* otherwise) const {
+    if (!extension.Has(key)) {
+      return otherwise;
+    }
+    if (!extension.Get(key).IsString()) {
+      fail("have a " + std::string(key) + " that is no text");
+    }
+    return extension.Get(key).Get<std::string>();
   }
 
   [[nodiscard]] Compressed read(const tinygltf::Value& extension) const {

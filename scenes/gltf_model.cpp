@@ -11,6 +11,7 @@
 #include "scenes/gltf_draco.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_files.h"
+#include "scenes/gltf_json.h"
 #include "scenes/gltf_meshopt.h"
 #include "scenes/gltf_placeholders.h"
 #include "sim/error.h"
@@ -201,6 +202,9 @@ void Model::parse() {
     fail("its JSON is nested deeper than " + std::to_string(max_json_depth) + " levels");
   }
   take_memory(shape.bytes(json.size()), "its JSON takes");
+  if (const std::string fault = json_fault(json); !fault.empty()) {
+    fail("it is no valid glTF 2.0: " + fault);
+  }
   const sim::MemoryBudget before = memory();
   FileAccess access(path().parent_path(), options().max_file_bytes, memory(), "URI");
   std::string error;

@@ -255,6 +255,30 @@ const std::vector<Fault>& faults() {
       {"no triangles", "no triangles", put("/meshes/0/primitives/0/mode", 0)},
       {"no nodes", "no triangles", put("/scenes/0/nodes", json::array())},
       {"no version", "asset", drop("/asset")},
+      {"version 9", "/asset/version is \"9.0\"", put("/asset/version", "9.0")},
+      {"a later version is needed", "/asset/minVersion is \"2.1\"", put("/asset/minVersion", "2.1")},
+      {"mesh beyond 32 bits", "/nodes/0/mesh is 4294967296, which is no whole number of at most 2147483647",
+       put("/nodes/0/mesh", 4294967296)},
+      {"scene beyond 32 bits", "/scene is 4294967296", put("/scene", 4294967296)},
+      {"negative scene beyond 32 bits", "/scene is -4294967296", put("/scene", -4294967296)},
+      {"accessor beyond 32 bits", "/meshes/0/primitives/0/attributes/POSITION is 4294967296",
+       put("/meshes/0/primitives/0/attributes/POSITION", 4294967296)},
+      {"node of a scene beyond 32 bits", "/scenes/0/nodes/0 is 4294967296", put("/scenes/0/nodes/0", 4294967296)},
+      {"accessor of a morph target beyond 32 bits", "/meshes/0/primitives/0/targets/0/POSITION is 4294967296",
+       put("/meshes/0/primitives/0/targets", {{{"POSITION", 4294967296}}})},
+      {"compressed count beyond 32 bits", "/bufferViews/0/extensions/EXT_meshopt_compression/count is 4295967296",
+       put("/bufferViews/0/extensions/EXT_meshopt_compression/count", 4295967296)},
+      {"a mode between modes", "/meshes/0/primitives/0/mode is 4.5", put("/meshes/0/primitives/0/mode", 4.5)},
+      {"a mode that is a text", "/meshes/0/primitives/0/mode is \"4\", which is no number",
+       put("/meshes/0/primitives/0/mode", "4")},
+      {"a translation with a text", "/nodes/0/translation/1 is \"a\", which is no number",
+       put("/nodes/0/translation", {0, "a", 0})},
+      {"a rotation that is a text", "/nodes/0/rotation is \"x\"", put("/nodes/0/rotation", "x")},
+      {"a scale of null", "/nodes/0/scale/2 is null", put("/nodes/0/scale", {1, 1, nullptr})},
+      {"an extension that is a list", "/nodes/0/extensions/X is a list; an extension is an object",
+       put("/nodes/0/extensions/X", json::array())},
+      {"an extension that is a number", "/nodes/0/extensions/X is 5; an extension is an object",
+       put("/nodes/0/extensions/X", 5)},
       {"nested extras", "nested deeper", put("/extras", deep(200))},
       {"nested extension", "nested deeper",
        put("/nodes/0/extensions/X/y", deep(300))},
@@ -267,7 +291,6 @@ const std::vector<Fault>& faults() {
 
 TEST(Hostile, EveryFaultIsRefusedWithPathAndReason) {
   const test::TemporaryDirectory directory;
-  EXPECT_GE(faults().size(), 25U);
   for (const Fault& fault : faults()) {
     SCOPED_TRACE(fault.name);
     GltfFile file = GltfFile::square();
@@ -338,12 +361,24 @@ TEST(Hostile, ManyInstancesOfManyPointsEnd) {
   const test::TemporaryDirectory directory;
   GltfFile file = GltfFile::square();
   const json points = {{"attributes", {{"POSITION", 0}}}, {"mode", 0}};
-  file.json["meshes"][0]["primitives"] = std::vector<json>(20'000, points);
-  file.json["nodes"] = std::vector<json>(20'000, {{"mesh", 0}});
+  file.json["meshes"][0]["primitives"] = std::vector<json>(2'000, points);
+  file.json["nodes"] = std::vector<json>(2'000, {{"mesh", 0}});
   file.json["scenes"] = json::array();
   const auto path = file.write_glb(directory.path(), "points.glb");
-  const std::string message = test::user_error_of([&] { static_cast<void>(load_gltf(path, {}, {})); });
-  EXPECT_NE(message.find("primitives"), std::string::npos) << message;
+  FileOptions options;
+  options.max_triangles = 1U << 20U;
+  const std::string message = test::user_error_of([&] { static_cast<void>(load_gltf(path, options, {})); });
+  EXPECT_NE(message.find("more than 1048576 primitives"), std::string::npos) << message;
+}
+
+TEST(Hostile, WhatOthersKeepInExtrasAndExtensionsIsTheirs) {
+  const test::TemporaryDirectory directory;
+  GltfFile file = GltfFile::square();
+  const json own = {
+      {"mesh", 4294967296}, {"scale", "large"}, {"mode", nullptr}, {"extensions", {{"list", {1.5}}}}};
+  file.json["extras"] = own;
+  file.json["nodes"][0]["extensions"]["EXT_nobody_knows"] = {{"mesh", 4294967296}, {"scale", true}};
+  EXPECT_EQ(load_gltf(file.write_glb(directory.path(), "own.glb"), {}, {}).triangles.size(), 2U);
 }
 
 TEST(Hostile, DeepHierarchiesNeedNoStack) {
@@ -363,9 +398,7 @@ TEST(Hostile, FlippedBytesEitherLoadOrAreRefused) {
   export_glb(make_procedural("teapot:2"), directory.path() / "good.glb");
   const std::string good = testing::read_bytes(directory.path() / "good.glb");
   const auto path = directory.path() / "flipped.glb";
-  int loaded = 0;
-  int refused = 0;
-  rc::check("no flip of bytes crashes the loader", [&] {
+  EXPECT_TRUE(rc::check("no flip of bytes crashes the loader", [&] {
     std::string bytes = good;
     const int flips = *rc::gen::inRange(1, 6);
     // Half of the flips hit the JSON, whose length is the fourth word.
@@ -389,13 +422,10 @@ TEST(Hostile, FlippedBytesEitherLoadOrAreRefused) {
       for (const glm::dvec3& p : scene.positions) {
         RC_ASSERT(std::abs(p.x) <= 1e30 && std::abs(p.y) <= 1e30 && std::abs(p.z) <= 1e30);
       }
-      ++loaded;
     } catch (const sim::UserError& error) {
       RC_ASSERT(std::string(error.what()).rfind(path.string() + ": ", 0) == 0U);
-      ++refused;
     }
-  });
-  EXPECT_GT(loaded + refused, 0);
+  }));
 }
 
 TEST(Hostile, ChangedNumbersEitherLoadOrAreRefused) {
