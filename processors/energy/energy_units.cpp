@@ -76,8 +76,9 @@ machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const Name
   const std::optional<machine::CacheFigures> fitted = fitted_cache(energy.preset, named.cache);
   if (!fitted) {
     const std::string level = "energy." + std::string(named.level);
+    const bool line = named.cache.line < least_fitted_line || named.cache.line > most_fitted_line;
     throw sim::KeyError(
-        std::string(named.size_key),
+        line ? "cache.line" : std::string(named.size_key),
         "the energy of a cache of " + sim::print_size(static_cast<std::int64_t>(named.cache.size)) +
             " with lines of " + std::to_string(named.cache.line) +
             " bytes is not known: it is fitted to caches of " + sim::print_size(least_fitted_size) + " to " +

@@ -273,6 +273,8 @@ TEST(FittedCaches, AreRefusedWhereNothingWasFitted) {
             "cache.size: the energy of a cache of 1 KiB with lines of 32 bytes is not known: it is fitted to "
             "caches of 2 KiB to 4 MiB with lines of 32 to 64 bytes; give energy.l1_read, energy.l1_write and "
             "energy.l1_area");
+  machine.cache.cache.line = 16;
+  EXPECT_TRUE(refusal().starts_with("cache.line: the energy of a cache of 1 KiB with lines of 16 bytes"));
   machine.energy.figures.l1 = {1.0, 1.0, by_fit};
   EXPECT_NE(refusal(), "no UserError");
   machine.energy.figures.l1.area = 0.0;
@@ -395,10 +397,9 @@ TEST(Energy, IsThatOfWhatTheCountersSayOnRandomMachines) {
     const auto with = [&](const auto& change) {
       MachineConfig changed = machine;
       change(changed.energy.figures);
-      const MachineResult result = replay::replay(one.log, changed);
-      EXPECT_EQ(result.end, plain.end);
-      EXPECT_EQ(result.energy->total, sum_of_parts(*result.energy)) << seed;
-      return *result.energy;
+      const EnergyResult result = energy_of(changed, replay::energy_counts(one.log, changed, plain));
+      EXPECT_EQ(result.total, sum_of_parts(result)) << seed;
+      return result;
     };
     EXPECT_EQ(with([](EnergyFigures&) {}).total, 0) << seed;
     const ReferenceCounts references = plain.references();
@@ -421,9 +422,12 @@ TEST(Energy, IsThatOfWhatTheCountersSayOnRandomMachines) {
     EXPECT_EQ(with([](EnergyFigures& f) { f.wire = f.interconnect_length = 1.0; }).interconnect,
               bytes * 8 * fj_a_pj)
         << seed;
-    const EnergyResult all = with([](EnergyFigures& f) {
-      f = energy_figures(EnergyPreset::nm22), f.l1 = f.l2 = {2.5, 3.5, 0.25};
-    });
+    machine.energy.figures = energy_figures(EnergyPreset::nm22);
+    machine.energy.figures.l1 = machine.energy.figures.l2 = {2.5, 3.5, 0.25};
+    const MachineResult replayed = replay::replay(one.log, machine);
+    EXPECT_EQ(replayed.end, plain.end);
+    const EnergyResult all = *replayed.energy;
+    EXPECT_EQ(all.total, sum_of_parts(all)) << seed;
     EXPECT_GT(all.operations, 0);
     EXPECT_GT(all.leakage, 0);
   }
