@@ -156,7 +156,6 @@ std::uint32_t LazyOctree::divide(State& state, LazyNode& node) {
       info |= below.empty() ? 0U : 1U << child;
     }
     node.first = first;
-    state.released.fetch_add(list.size() * sizeof(std::uint32_t), std::memory_order_relaxed);
   }
   if (list.size() > kept_scratch) {
     sorted = {};
@@ -211,7 +210,6 @@ LazyOctreeState LazyOctree::state() const {
   }
   result.node_bytes = result.all.nodes() * sizeof(LazyNode) + result.all.pending * sizeof(PendingNode);
   result.list_bytes = (result.all.leaf_entries + result.all.pending_entries) * sizeof(std::uint32_t);
-  result.released_list_bytes = state_->released;
   result.subdivided = state_->subdivided;
   return result;
 }

@@ -52,9 +52,6 @@ struct LazyOctreeState {
   std::uint64_t node_bytes = 0;
   /// Bytes of the lists of L and P nodes, 4 for each triangle listed.
   std::uint64_t list_bytes = 0;
-  /// Bytes of the lists of P nodes that were subdivided after the initial build. They were freed at once;
-  /// list_bytes does not include them.
-  std::uint64_t released_list_bytes = 0;
   /// P nodes that rays have subdivided (or that became leaves, because dividing them separates nothing).
   std::uint64_t subdivided = 0;
 };
@@ -115,7 +112,6 @@ class LazyOctree {
     RootFrame frame;
     LazyNodes nodes;
     std::atomic<std::uint64_t> listed{0};  ///< entries of the lists of L and P nodes
-    std::atomic<std::uint64_t> released{0};
     std::atomic<std::uint64_t> subdivided{0};
   };
 

@@ -63,7 +63,6 @@ class IdealNetwork final : public CountedNetwork<IdealNetwork> {
   Delivery carry(Ticks now, std::uint32_t /*from*/, std::uint32_t /*to*/, Ticks /*data*/) const {
     return {add_ticks(now, hop_), 0, hop_};
   }
-  std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) const override { return 0; }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t /*bytes*/) const override {
     return from == to ? 0 : hop_;
   }
@@ -81,11 +80,8 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
       : Base(config, nodes), routes_(nodes), free_at_(routes_.table_size()) {
     statistics_.links = routes_.links();
   }
-  std::uint32_t hops(std::uint32_t from, std::uint32_t to) const override {
-    return from == to ? 0 : routes_.hops(from, to);
-  }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const override {
-    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, hops(from, to)), Base::beats(bytes));
+    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, routes_.hops(from, to)), Base::beats(bytes));
   }
 
   Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) {

@@ -75,8 +75,6 @@ class Network {
   /// port arrives at once. Messages between the same two ports arrive in the order of sending.
   virtual Delivery send(sim::Ticks now, std::uint32_t from, std::uint32_t to, std::uint32_t bytes) = 0;
 
-  /// Links on the way from one port to another; ideal: 0.
-  [[nodiscard]] virtual std::uint32_t hops(std::uint32_t from, std::uint32_t to) const = 0;
   /// Time of a message when there is no other traffic; 0 to its own port.
   [[nodiscard]] virtual sim::Ticks unloaded(std::uint32_t from, std::uint32_t to,
                                             std::uint32_t bytes) const = 0;

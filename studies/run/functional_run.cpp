@@ -61,11 +61,6 @@ FunctionalRun run_functional(const keys::FrameConfig& config) {
   return frame.finish(frame.trace());
 }
 
-FunctionalRun run_planned(const keys::FrameConfig& config, scenes::Scene scene, scenes::FileUse file) {
-  const PreparedFrame frame(config, std::move(scene), std::move(file));
-  return frame.finish(frame.trace());
-}
-
 FunctionalRun run_functional(const keys::FrameConfig& config, const scenes::Scene& scene) {
   const PreparedFrame frame(config, scene);
   return frame.finish(frame.trace());

@@ -39,9 +39,6 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
 /// UserError when the scene cannot be used or the frame would take more than the memory limit, which it
 /// estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const keys::FrameConfig& config);
-/// Like run_functional, of a scene that is open already, whose textures may still be files.
-[[nodiscard]] FunctionalRun run_planned(const keys::FrameConfig& config, scenes::Scene scene,
-                                        scenes::FileUse file = {});
 /// Like run_functional above, of the open scene that `config` names. Nothing of it is left out.
 [[nodiscard]] FunctionalRun run_functional(const keys::FrameConfig& config, const scenes::Scene& scene);
 

@@ -49,10 +49,4 @@ void add_entries(Plan& plan, std::vector<PlanEntry> entries) {
                    [](const PlanEntry& a, const PlanEntry& b) { return a.item < b.item; });
 }
 
-PlanEntry* find_entry(Plan& plan, PlanItem item) {
-  const auto at = std::find_if(plan.entries.begin(), plan.entries.end(),
-                               [&](const PlanEntry& entry) { return entry.item == item; });
-  return at == plan.entries.end() ? nullptr : &*at;
-}
-
 }  // namespace marti::studies::run

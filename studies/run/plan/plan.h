@@ -92,9 +92,6 @@ struct Plan {
 /// Puts entries of items that the plan does not have yet where they belong.
 void add_entries(Plan& plan, std::vector<PlanEntry> entries);
 
-/// The entry of an item, or null.
-[[nodiscard]] PlanEntry* find_entry(Plan& plan, PlanItem item);
-
 [[nodiscard]] inline std::string_view name_of(PlanItem item) {
   return plan_item_names[static_cast<std::size_t>(item)];
 }

@@ -57,7 +57,7 @@ std::vector<PlanItem> left_out_by(const Plan& plan) {
 
 FunctionalRun run_keeping(FrameConfig frame, const KeptItems& keep, const scenes::Scene& scene) {
   frame.keep = keep;
-  return run_planned(frame, scene);
+  return testing::run_planned(frame, scene);
 }
 
 // Fills the data that the plan leaves out with values that would change the image if they were read.
@@ -233,7 +233,7 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
 
   const FunctionalRun run = run_functional(frame);
   Plan plan = run.plan;
-  const PlanEntry& textures = *find_entry(plan, PlanItem::textures);
+  const PlanEntry& textures = *testing::find_entry(plan, PlanItem::textures);
   EXPECT_EQ(textures.decision, PlanDecision::left_out);
   EXPECT_EQ(textures.fact, "1 of 2 textures may colour a point that a ray meets");
   EXPECT_EQ(textures.saved.bytes, 4 * 256);
@@ -274,7 +274,7 @@ TEST(PlanProof, SeesWhatDiffers) {
   scenes::Scene scene = testing::looking_ahead();
   testing::add_wall(scene, -3.0, testing::add_material(scene));
   testing::add_light(scene, {0.0, 1.0, 0.0});
-  const FunctionalRun run = run_planned(testing::small_frame(), scene);
+  const FunctionalRun run = testing::run_planned(testing::small_frame(), scene);
   processors::program::WorkLog other = *run.frame.log;
   EXPECT_EQ(difference_of(*run.frame.log, other), "");
   other.rows[3].words.back() ^= 1U;
@@ -289,8 +289,9 @@ TEST(PlanProof, SeesWhatDiffers) {
   FrameConfig bare = testing::small_frame();
   scenes::Scene dark = scene;
   dark.lights[0].color = glm::dvec3(0.0);
-  EXPECT_EQ(difference_of(*run_planned(bare, dark).frame.log, without_shadows_at({true}, *run.frame.log)),
-            "");
+  EXPECT_EQ(
+      difference_of(*testing::run_planned(bare, dark).frame.log, without_shadows_at({true}, *run.frame.log)),
+      "");
   EXPECT_EQ(difference_of(*run.frame.log, without_shadows_at({false}, *run.frame.log)), "");
 }
 

@@ -1,6 +1,7 @@
 // Scenes for the tests of the plan: made by hand, and at random.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -11,7 +12,7 @@
 
 #include "processors/program/vector.h"
 #include "scenes/scene.h"
-#include "studies/run/functional_run.h"
+#include "studies/run/prepared_frame.h"
 
 namespace marti::studies::testing {
 
@@ -25,6 +26,19 @@ inline keys::FrameConfig small_frame(const std::string& structure = "octree", st
   config.render.height = side;
   config.memory = sim::MemoryBudget(std::uint64_t{1} << 30U);
   return config;
+}
+
+/// Renders and records a frame of a scene, with a plan of what it does not need.
+inline run::FunctionalRun run_planned(const keys::FrameConfig& config, scenes::Scene scene,
+                                      scenes::FileUse file = {}) {
+  const run::PreparedFrame frame(config, std::move(scene), std::move(file));
+  return frame.finish(frame.trace());
+}
+
+/// The entry of an item, which the plan must have.
+inline run::PlanEntry* find_entry(run::Plan& plan, run::PlanItem item) {
+  const auto at = std::ranges::find(plan.entries, item, &run::PlanEntry::item);
+  return at == plan.entries.end() ? nullptr : &*at;
 }
 
 /// Numbers that are the same on every machine, unlike those of the standard distributions.

@@ -33,7 +33,7 @@ Plan plan_of(const scenes::Scene& scene, const processors::program::RenderOption
 
 PlanDecision decision(const scenes::Scene& scene, PlanItem item, const KeptItems& keep = {}) {
   Plan plan = plan_of(scene, small_frame().render, keep);
-  return find_entry(plan, item)->decision;
+  return testing::find_entry(plan, item)->decision;
 }
 
 bool is_in_view(const scenes::Scene& scene, std::uint32_t primitive) {
@@ -95,8 +95,8 @@ TEST(Plan, LeavesOutWhatIsBehindTheCamera) {
     EXPECT_EQ(decision(scene, item, KeptItems::all()), PlanDecision::kept) << name_of(item);
   }
   Plan plan = plan_of(scene, small_frame().render);
-  EXPECT_EQ(find_entry(plan, PlanItem::textures)->saved.bytes, 16);
-  EXPECT_EQ(find_entry(plan, PlanItem::reflection_rays)->fact,
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::textures)->saved.bytes, 16);
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::reflection_rays)->fact,
             "0 of 1 materials that a ray may meet reflect; 1 that no ray can meet would");
   EXPECT_EQ(planned_options(plan, facts_of_frame(scene, small_frame().render, "octree", {})).max_depth, 1U);
 }
@@ -121,7 +121,7 @@ TEST(Plan, KeepsWhatAMirrorShows) {
   }
   // The difference matters: without the texture, or without the normals, the image changes.
   const FrameConfig frame = small_frame();
-  const std::uint64_t whole = run_planned(frame, scene).image_hash;
+  const std::uint64_t whole = testing::run_planned(frame, scene).image_hash;
   scenes::Scene without = scene;
   without.textures[0].texels.clear();
   EXPECT_NE(run_functional(frame, std::as_const(without)).image_hash, whole);
@@ -132,8 +132,8 @@ TEST(Plan, KeepsWhatAMirrorShows) {
   processors::program::RenderOptions shallow = frame.render;
   shallow.max_depth = 1;
   Plan plan = plan_of(scene, shallow);
-  EXPECT_EQ(find_entry(plan, PlanItem::textures)->decision, PlanDecision::left_out);
-  EXPECT_EQ(find_entry(plan, PlanItem::reflection_rays)->decision, PlanDecision::not_applicable);
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::textures)->decision, PlanDecision::left_out);
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::reflection_rays)->decision, PlanDecision::not_applicable);
 }
 
 // Glass in view bends rays to primitives beside the view.
@@ -163,11 +163,11 @@ TEST(Plan, KeepsWhatCastsShadowsIntoTheView) {
   add_wall(scene, -5.0, add_material(scene));
   const FrameConfig frame = small_frame();
   add_light(scene, {0.0, 30.0, 10.0});
-  const std::uint64_t bright = run_planned(frame, scene).image_hash;
+  const std::uint64_t bright = testing::run_planned(frame, scene).image_hash;
   add_triangle(scene, {-30.0, 20.0, -8.0}, {30.0, 20.0, -8.0}, {0.0, 20.0, 30.0}, 0);
   EXPECT_TRUE(is_in_view(scene, 0));
   EXPECT_FALSE(is_in_view(scene, 1));
-  EXPECT_NE(run_planned(frame, scene).image_hash, bright);
+  EXPECT_NE(testing::run_planned(frame, scene).image_hash, bright);
 }
 
 TEST(Plan, BlackMaterialsSendNoShadowRays) {
@@ -176,16 +176,16 @@ TEST(Plan, BlackMaterialsSendNoShadowRays) {
   scene.materials[black].color = glm::dvec3(0.0);
   add_wall(scene, -5.0, black);
   add_light(scene, {0.0, 2.0, 0.0});
-  const FunctionalRun without = run_planned(small_frame(), scene);
+  const FunctionalRun without = testing::run_planned(small_frame(), scene);
   FrameConfig keep = small_frame();
   keep.keep.keep(PlanItem::shadow_rays);
-  const FunctionalRun with = run_planned(keep, scene);
+  const FunctionalRun with = testing::run_planned(keep, scene);
   EXPECT_EQ(without.totals.rays[1], 0U);
   EXPECT_EQ(with.totals.rays[1], with.frame.rays.hit[0]);
   EXPECT_GT(with.totals.rays[1], 0U);
   EXPECT_EQ(with.image_hash, without.image_hash);
   Plan plan = without.plan;
-  const PlanEntry& entry = *find_entry(plan, PlanItem::shadow_rays);
+  const PlanEntry& entry = *testing::find_entry(plan, PlanItem::shadow_rays);
   EXPECT_EQ(entry.decision, PlanDecision::left_out);
   EXPECT_EQ(entry.kind, PlanClass::proved);
   ASSERT_TRUE(entry.counted.has_value());
@@ -201,9 +201,9 @@ TEST(Plan, MailboxesHaveNoEffectWhereNothingIsListedTwice) {
   add_triangle(scene, {-1.0, -1.0, -4.0}, {1.0, -1.0, -4.0}, {0.0, 1.0, -4.0}, material);
   FrameConfig frame = small_frame("none");
   frame.render.mailboxes = true;
-  Plan plan = run_planned(frame, scene).plan;
-  EXPECT_EQ(find_entry(plan, PlanItem::mailboxes)->decision, PlanDecision::left_out);
-  EXPECT_EQ(find_entry(plan, PlanItem::mailboxes)->counted->operations, 64);
+  Plan plan = testing::run_planned(frame, scene).plan;
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::mailboxes)->decision, PlanDecision::left_out);
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::mailboxes)->counted->operations, 64);
   frame.structure = "octree";
   Random random(7);
   for (int i = 0; i < 30; ++i) {
@@ -211,8 +211,8 @@ TEST(Plan, MailboxesHaveNoEffectWhereNothingIsListedTwice) {
     const glm::dvec3 b = random.point(3.0);
     add_triangle(scene, a, b, random.point(3.0), material);
   }
-  plan = run_planned(frame, scene).plan;
-  EXPECT_EQ(find_entry(plan, PlanItem::mailboxes)->decision, PlanDecision::needed);
+  plan = testing::run_planned(frame, scene).plan;
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::mailboxes)->decision, PlanDecision::needed);
 }
 
 // Whatever is added to a scene may only enlarge what is kept.
