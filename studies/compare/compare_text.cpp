@@ -27,27 +27,6 @@ Json typed(const std::string& key, const tables::Cell& value) {
 
 Json side_json(const ComparedResult& result) { return {{"name", result.name}, {"version", result.version}}; }
 
-// Aligned columns, the first to the left, the others to the right.
-std::string lines_of(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const std::vector<std::string>& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], tables::width_of(row[i]));
-    }
-  }
-  std::string text;
-  for (const std::vector<std::string>& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - tables::width_of(row[i]), ' ');
-      line += "  " + (i == 0 ? row[i] + padding : padding + row[i]);
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
 // Figures with their units, the first `shown` of them.
 std::string figure_lines(const std::vector<Difference>& figures, bool all) {
   const std::size_t shown = all ? figures.size() : std::min(figures.size(), most_lines);
@@ -58,7 +37,7 @@ std::string figure_lines(const std::vector<Difference>& figures, bool all) {
     rows.push_back({printable(figure.name), printable(tables::figure_text(figure.a, unit, "-")),
                     printable(tables::figure_text(figure.b, unit, "-")), change_of(figure)});
   }
-  return lines_of(rows) + and_more(shown, figures.size());
+  return tables::aligned(rows, {true}) + and_more(shown, figures.size());
 }
 
 std::string time_lines(const ComparedPair& pair) {
@@ -69,7 +48,7 @@ std::string time_lines(const ComparedPair& pair) {
                     tables::signed_seconds(std::llround(time.change)),
                     tables::signed_percent(time.change / end)});
   }
-  return lines_of(rows);
+  return tables::aligned(rows, {true});
 }
 
 Json times_json(const std::vector<ActivityTime>& times) {
@@ -134,7 +113,7 @@ std::string settings_lines(const std::vector<Difference>& settings) {
   for (const Difference& setting : settings) {
     rows.push_back({printable(setting.name), setting_text(setting.a), setting_text(setting.b)});
   }
-  return lines_of(rows);
+  return tables::aligned(rows, {true});
 }
 
 std::string differences_text(const ComparedPair& pair, bool all) {

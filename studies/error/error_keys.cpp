@@ -20,17 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> family_names = {"simulator", "rendering"};
 
-template <class T>
-std::vector<T> ascending(std::span<const sim::Value> values) {
-  std::vector<T> numbers;
-  for (const sim::Value& value : values) {
-    numbers.push_back(static_cast<T>(std::get<std::int64_t>(value)));
-  }
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
-}
-
 // Refuses machines that cannot be built or that a method cannot answer for.
 void check_machines(const sim::Config& config, const ErrorConfig& error) {
   for (const std::uint64_t cache : error.caches) {
@@ -148,19 +137,16 @@ ErrorConfig read_error(sim::Config& config) {
                               "error.families");
   }
   error.machine = keys::read_machine(config);
-  error.scenes = config.texts("error.scenes");
-  if (error.scenes.empty()) {
-    config.fail("error.scenes", "must name a scene");
-  }
-  error.sides = ascending<std::uint32_t>(config.values("error.sides"));
+  error.scenes = keys::study_scenes(config, "error.scenes");
+  error.sides = keys::ascending<std::uint32_t>(config, "error.sides");
   if (error.sides.empty()) {
     config.fail("error.sides", "must name a side");
   }
-  error.nodes = ascending<std::uint32_t>(config.values("error.nodes"));
+  error.nodes = keys::ascending<std::uint32_t>(config, "error.nodes");
   if (error.nodes.empty() || error.nodes.front() != 1) {
     config.fail("error.nodes", "must hold 1, against which speed-up is measured");
   }
-  error.caches = ascending<std::uint64_t>(config.values("error.cache_sizes"));
+  error.caches = keys::ascending<std::uint64_t>(config, "error.cache_sizes");
   if (error.caches.empty()) {
     config.fail("error.cache_sizes", "must name a size");
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "processors/program/render.h"
+#include "studies/keys/key_parts.h"
 
 namespace marti::studies::error {
 
@@ -12,27 +13,6 @@ namespace {
 // References have so many times the samples of what is held against them: their own noise adds at most 3 % to
 // the error (robust enough without a correction: sqrt(1 + 1/16)).
 constexpr std::uint32_t reference_factor = 16;
-
-template <class T>
-void sort_out(std::vector<T>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
-std::vector<std::uint32_t> ascending_integers(const sim::Config& config, std::string_view key) {
-  std::vector<std::uint32_t> values;
-  for (const std::int64_t value : config.integers(key)) {
-    values.push_back(static_cast<std::uint32_t>(value));
-  }
-  sort_out(values);
-  return values;
-}
-
-std::vector<double> ascending_reals(const sim::Config& config, std::string_view key) {
-  std::vector<double> values = config.reals(key);
-  sort_out(values);
-  return values;
-}
 
 }  // namespace
 
@@ -65,7 +45,7 @@ void declare_rendering_error_keys(sim::Schema& schema) {
 RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::FrameConfig& frame) {
   RenderingErrorOptions options;
   options.side = static_cast<std::uint32_t>(config.integer("error.rendering.side"));
-  options.samples = ascending_integers(config, "error.rendering.samples");
+  options.samples = keys::ascending<std::uint32_t>(config, "error.rendering.samples");
   options.reference_samples = static_cast<std::uint32_t>(config.integer("error.rendering.reference_samples"));
   if (options.samples.empty()) {
     config.fail("error.rendering.samples", "it is empty; give at least one number");
@@ -75,15 +55,15 @@ RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::Fram
                 "it must be at least " + std::to_string(reference_factor) + " times the most of " +
                     "error.rendering.samples, " + std::to_string(reference_factor * options.samples.back()));
   }
-  options.depths = ascending_integers(config, "error.rendering.depths");
+  options.depths = keys::ascending<std::uint32_t>(config, "error.rendering.depths");
   options.reference_depth = static_cast<std::uint32_t>(config.integer("error.rendering.reference_depth"));
   if (!options.depths.empty() && options.depths.back() >= options.reference_depth) {
     config.fail("error.rendering.depths", std::to_string(options.depths.back()) +
                                               " is not below error.rendering.reference_depth = " +
                                               std::to_string(options.reference_depth));
   }
-  options.weights = ascending_reals(config, "error.rendering.weights");
-  options.voxel_cuts = ascending_reals(config, "error.rendering.voxel_cuts");
+  options.weights = keys::ascending<double>(config, "error.rendering.weights");
+  options.voxel_cuts = keys::ascending<double>(config, "error.rendering.voxel_cuts");
   options.seed = static_cast<std::uint64_t>(config.integer("error.rendering.seed"));
   options.repeats = static_cast<std::uint32_t>(config.integer("error.rendering.repeats"));
   if (frame.render.voxel_cut > 0.0) {

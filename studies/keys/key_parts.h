@@ -1,14 +1,17 @@
 // What the declarations of configuration keys share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "sim/config.h"
 #include "sim/schema.h"
+#include "sim/shown.h"
 
 namespace marti::studies::keys {
 
@@ -32,6 +35,33 @@ inline void clock(sim::Schema& schema, std::string_view name, std::string_view m
 /// The value of a key that counts something.
 [[nodiscard]] inline std::uint32_t count(const sim::Config& config, std::string_view key) {
   return static_cast<std::uint32_t>(config.integer(key));
+}
+
+/// The numbers of a list, ascending and each once. `T` holds all that the key allows.
+template <class T>
+std::vector<T> ascending(const sim::Config& config, std::string_view key) {
+  std::vector<T> numbers;
+  for (const sim::Value& value : config.values(key)) {
+    const auto* const whole = std::get_if<std::int64_t>(&value);
+    numbers.push_back(whole != nullptr ? static_cast<T>(*whole) : static_cast<T>(std::get<double>(value)));
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+/// The scenes of a study: at least one, none twice.
+[[nodiscard]] inline std::vector<std::string> study_scenes(const sim::Config& config, std::string_view key) {
+  std::vector<std::string> names = config.texts(key);
+  if (names.empty()) {
+    config.fail(key, "must name a scene");
+  }
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(names.begin(), name, *name) != name) {
+      config.fail(key, "names " + sim::shown(*name) + " twice");
+    }
+  }
+  return names;
 }
 
 /// Says which command reads the sections that this schema does not declare: a file is often given to the

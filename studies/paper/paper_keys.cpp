@@ -4,6 +4,7 @@
 
 #include "processors/node/memory_system.h"
 #include "sim/shown.h"
+#include "studies/keys/key_parts.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 
@@ -116,18 +117,11 @@ PaperConfig read_paper(sim::Config& config) {
   processors::machine::MachineConfig building = paper.machine;
   building.build.sharing = processors::machine::Sharing::shared;
   keys::check_machine(config, building);
-  paper.scenes = config.texts("paper.scenes");
-  if (paper.scenes.empty()) {
-    config.fail("paper.scenes", "must name a scene");
-  }
+  paper.scenes = keys::study_scenes(config, "paper.scenes");
   paper.runs = read_runs(config);
-  for (const std::int64_t level : config.integers("paper.levels")) {
-    if (level < paper.frame.structure_options.octree.max_level) {
-      paper.levels.push_back(static_cast<std::uint32_t>(level));
-    }
-  }
-  std::sort(paper.levels.begin(), paper.levels.end());
-  paper.levels.erase(std::unique(paper.levels.begin(), paper.levels.end()), paper.levels.end());
+  paper.levels = keys::ascending<std::uint32_t>(config, "paper.levels");
+  std::erase_if(paper.levels,
+                [&](std::uint32_t level) { return level >= paper.frame.structure_options.octree.max_level; });
   paper.rules = config.reals("paper.rules");
   paper.host_repetitions = static_cast<std::uint32_t>(config.integer("paper.host_repetitions"));
   config.refuse_unused();

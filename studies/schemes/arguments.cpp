@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "studies/tables/text_units.h"
+
 namespace marti::studies::schemes {
 
 namespace {
@@ -52,17 +54,17 @@ tables::Claim naive(std::span<const ScalingPoint> points) {
     });
     const ScalingPoint& last = machine.back();
     claim.here = fmt::format(
-        "at most {:.1f} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
-        speed_up(*best), last.nodes, 100.0 * last.interconnect.value_or(0.0));
+        "at most {} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
+        tables::times(speed_up(*best)), last.nodes, 100.0 * last.interconnect.value_or(0.0));
     claim.verdict = tables::verdict_of(last.interconnect.value_or(0.0) > 0.9 && efficiency(last) < 0.5);
   }
   return claim;
 }
 
-// "12", or "more than 64" where that many do not suffice.
-std::string nodes_text(const std::optional<double>& nodes, std::span<const ScalingPoint> machine,
-                       int digits) {
-  return nodes ? fmt::format("{:.{}f}", *nodes, digits) : fmt::format("more than {}", machine.back().nodes);
+// "12", "4.4" below 10, or "more than 64" where that many do not suffice.
+std::string nodes_text(const std::optional<double>& nodes, std::span<const ScalingPoint> machine) {
+  return nodes ? fmt::format("{:.{}f}", *nodes, *nodes < 10.0 ? 1 : 0)
+               : fmt::format("more than {}", machine.back().nodes);
 }
 
 tables::Claim cached(std::span<const ScalingPoint> points) {
@@ -75,7 +77,7 @@ tables::Claim cached(std::span<const ScalingPoint> points) {
     const std::optional<double> few = half_efficiency_nodes(without);
     const std::optional<double> many = half_efficiency_nodes(with);
     claim.here = fmt::format("half the efficiency is left at {} nodes, without caches at {}",
-                             nodes_text(many, with, 0), nodes_text(few, without, 1));
+                             nodes_text(many, with), nodes_text(few, without));
     // Where the measured machines have too few nodes to tell, nothing is said.
     if (few && (many || with.back().nodes >= 4.0 * *few)) {
       claim.verdict = tables::verdict_of(!many || *many >= 4.0 * *few);
@@ -96,7 +98,7 @@ tables::Claim space(std::span<const ScalingPoint> points) {
     }
     const std::optional<double> half = half_efficiency_nodes(machine);
     claim.here =
-        fmt::format("efficiency {} nodes; half of it is left at {}", figures, nodes_text(half, machine, 0));
+        fmt::format("efficiency {} nodes; half of it is left at {}", figures, nodes_text(half, machine));
     if (half || machine.back().nodes >= most_nodes) {
       claim.verdict = tables::verdict_of(half && *half <= most_nodes);
     }
@@ -115,8 +117,8 @@ tables::Claim pipeline(std::span<const StagePoint> stages) {
       return fmt::format("{} + {} + {} nodes: {} {:.0f} % busy", point.nodes[0], point.nodes[1],
                          point.nodes[2], stage_names[point.slowest()], 100.0 * point.busy[point.slowest()]);
     };
-    claim.here = fmt::format("{}; {}, {:.2f} times as fast", describe(first), describe(*best),
-                             static_cast<double>(first.end) / static_cast<double>(best->end));
+    claim.here = fmt::format("{}; {}, {} times as fast", describe(first), describe(*best),
+                             tables::times(static_cast<double>(first.end) / static_cast<double>(best->end)));
     // Nodes taken from the least busy stage and given to the busiest must help.
     claim.verdict = tables::verdict_of(first.busy[first.slowest()] > 0.8 && best->end < first.end);
   }
@@ -134,9 +136,9 @@ tables::Claim cells(std::span<const CellPoint> points) {
       return static_cast<double>(point.tree.references.all_misses()) /
              static_cast<double>(std::max<std::int64_t>(1, fewest->tree.references.all_misses()));
     };
-    claim.here = fmt::format("fewest misses with level {}; {:.1f} times as many with {}, {:.2f} with {}",
-                             fewest->level, times(points.front()), points.front().level, times(points.back()),
-                             points.back().level);
+    claim.here = fmt::format("fewest misses with level {}; {} times as many with {}, {} with {}",
+                             fewest->level, tables::times(times(points.front())), points.front().level,
+                             tables::times(times(points.back())), points.back().level);
     claim.verdict = tables::verdict_of(times(points.front()) > 1.05 && times(points.back()) > 1.05);
   }
   return claim;

@@ -20,16 +20,6 @@ namespace {
 
 constexpr std::uint32_t most_study_nodes = 65536;
 
-std::vector<std::uint32_t> ascending(const sim::Config& config, std::string_view key) {
-  std::vector<std::uint32_t> values;
-  for (const std::int64_t value : config.integers(key)) {
-    values.push_back(static_cast<std::uint32_t>(value));
-  }
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
-}
-
 // A file that the configuration names, relative to the configuration's own directory.
 std::filesystem::path beside(const sim::Config& config, const std::string& name) {
   return std::filesystem::path(config.name()).parent_path() / name;
@@ -135,8 +125,8 @@ sim::Schema schemes_schema() {
 SchemesConfig read_schemes(sim::Config& config) {
   SchemesConfig schemes;
   schemes.frame = keys::read_one_frame(config);
-  schemes.nodes = ascending(config, "schemes.nodes");
-  schemes.cell_levels = ascending(config, "schemes.cell_levels");
+  schemes.nodes = keys::ascending<std::uint32_t>(config, "schemes.nodes");
+  schemes.cell_levels = keys::ascending<std::uint32_t>(config, "schemes.cell_levels");
   schemes.cell_objects = static_cast<std::uint32_t>(config.integer("schemes.cell_objects"));
   schemes.stage_nodes = static_cast<std::uint32_t>(config.integer("schemes.stage_nodes"));
   if (schemes.nodes.empty()) {

@@ -40,11 +40,14 @@ Json change_json(const helps::WhatHelps& what, const std::optional<helps::Measur
     return nullptr;
   }
   Json keys = Json::object();
+  Json set = Json::array();
   for (const helps::KeyChange& key : change->keys) {
     keys[key.key] = {{"from", keys::setting_value(key.key, key.from)},
                      {"to", keys::setting_value(key.key, key.to)}};
+    set.push_back(key.key + "=" + keys::plain_setting(key.to));
   }
   return {{"keys", keys},
+          {"set", set},
           {"outcome", name_of(change->outcome)},
           {"frame_time_ps", change->end ? Json(*change->end) : Json(nullptr)},
           {"saved", optional_json(change->saved)},

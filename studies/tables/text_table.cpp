@@ -65,11 +65,32 @@ std::string text_of(const Cell& cell, const Shown& how) {
   return "-";
 }
 
-}  // namespace
-
+// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
+}  // namespace
+
+std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::vector<bool>& left) {
+  std::vector<std::size_t> widths;
+  for (const std::vector<std::string>& line : lines) {
+    widths.resize(std::max(widths.size(), line.size()));
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      widths[i] = std::max(widths[i], width_of(line[i]));
+    }
+  }
+  std::string out;
+  for (const std::vector<std::string>& line : lines) {
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::string padding(widths[i] - width_of(line[i]), ' ');
+      text += "  " + (i < left.size() && left[i] ? line[i] + padding : padding + line[i]);
+    }
+    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  }
+  return out;
 }
 
 std::string text_of(const Table& table) {
@@ -84,23 +105,11 @@ std::string text_of(const Table& table) {
       line.push_back(text_of(in_words(row[i], table.columns()[i].type), shown(table.columns()[i])));
     }
   }
-  std::vector<std::size_t> widths(table.columns().size(), 0);
-  for (const std::vector<std::string>& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      widths[i] = std::max(widths[i], width_of(line[i]));
-    }
+  std::vector<bool> left;
+  for (const Column& column : table.columns()) {
+    left.push_back(column.type == ColumnType::text);
   }
-  std::string out = table.title() + "\n";
-  for (const std::vector<std::string>& line : lines) {
-    std::string text;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const std::string padding(widths[i] - width_of(line[i]), ' ');
-      const bool left = table.columns()[i].type == ColumnType::text;
-      text += "  " + (left ? line[i] + padding : padding + line[i]);
-    }
-    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
-  }
-  return out;
+  return table.title() + "\n" + aligned(lines, left);
 }
 
 std::string side_by_side(const Table& table, std::string_view row, std::string_view across,

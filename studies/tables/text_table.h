@@ -1,15 +1,18 @@
 // Tables as aligned text for people.
 #pragma once
 
-#include <cstddef>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "studies/tables/table.h"
 
 namespace marti::studies::tables {
 
-/// Characters, not bytes: bytes of UTF-8 that continue a character do not count.
-[[nodiscard]] std::size_t width_of(const std::string& text);
+/// Lines of cells in columns as wide as their widest cell. The columns for which `left` is true begin to the
+/// left, all others end to the right.
+[[nodiscard]] std::string aligned(const std::vector<std::vector<std::string>>& lines,
+                                  const std::vector<bool>& left);
 
 /// The title, a line of column names, a line of units, and the rows; numbers to the right. Times in ps are
 /// shown in seconds, bytes in KiB, fractions in percent; integers with thousands separators; a cell without

@@ -188,6 +188,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
       {"[interconnect]\narbitration = \"round_robin\"\n",
        {"paper.toml:2", "interconnect.arbitration", "fifo"}},
       {"[paper]\nscenes = []\n", {"paper.toml:2", "paper.scenes"}},
+      {"[paper]\nscenes = [\"tetra:2\", \"tetra:2\"]\n", {"paper.toml:2", "paper.scenes", "tetra:2 twice"}},
       {"[paper]\nscenes = [\"teapott:4\"]\n", {"paper.toml:2", "paper.scenes", "teapot"}},
       {"[paper]\nscenes = [\"tetra:1\"]\nrun_scenes = [\"nothing\"]\nrun_depths = [2]\n",
        {"paper.toml:3", "paper.run_scenes", "nothing"}},
