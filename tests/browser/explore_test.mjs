@@ -30,18 +30,22 @@ async function explore() {
   return { child, address, ended: new Promise((done) => child.once("exit", done)) };
 }
 
-let browser, served;
+let browser, served, shared;
 before(async () => {
   [browser, served] = await Promise.all([startBrowser(), explore()]);
+  shared = await open();
+  await answer_of(shared.page, {});
 });
 after(async () => {
   served?.child.kill();
   await browser?.close();
 });
 
+const screen = { width: 1400, height: 900 };
+
 /** The page with its answer; its faults are collected. */
 async function open(hash = "", address = served.address) {
-  const context = await browser.newContext({ viewport: { width: 1400, height: 900 } });
+  const context = await browser.newContext({ viewport: screen });
   const page = await context.newPage();
   const faults = [];
   page.on("pageerror", (error) => faults.push(error.stack));
@@ -65,7 +69,8 @@ const answer_of = async (page, settings) => {
   );
   return page.evaluate(() => explore.answered.answer);
 };
-const withPage = async (hash, use) => {
+/** Hands a page of its own to `use`, and wants it to have done nothing wrong by then. */
+const withOwnPage = async (hash, use) => {
   const opened = await open(hash);
   try {
     await use(opened.page);
@@ -74,11 +79,19 @@ const withPage = async (hash, use) => {
     await opened.close();
   }
 };
+/** The same with a page that tests share, since opening takes long; it has the settings of the configuration. */
+const withPage = async (use) => {
+  const { page, faults } = shared;
+  await page.getByRole("button", { name: "All settings as" }).click();
+  await answer_of(page, {});
+  await use(page);
+  assert.deepEqual(faults, []);
+};
 const control = (page, key) => page.locator(`[id="control-${key}"]`);
 
 describe("the page of marti explore", () => {
   it("has the figures of marti run for every move", () =>
-    withPage("", async (page) => {
+    withPage(async (page) => {
       let settings = {};
       const same = async () => {
         const shown = await answer_of(page, settings);
@@ -109,8 +122,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("says beside the control what is wrong with it", () =>
-    withPage("", async (page) => {
-      await answer_of(page, {});
+    withPage(async (page) => {
       await control(page, "machine.nodes").fill("0");
       const refused = await answer_of(page, { "machine.nodes": "0" });
       const said = page.locator(".control", { has: control(page, "machine.nodes") }).getByRole("alert");
@@ -122,7 +134,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("fills in the curve exactly and says what would help", () =>
-    withPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
+    withOwnPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
       await page.waitForFunction(() => document.querySelectorAll("#curve circle").length === 3);
       for (const { at, value } of await page.$$eval("#curve circle", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
         assert.equal(Number(value), (await run(config, { "machine.nodes": at })).figures.machine.speed_up);
@@ -141,7 +153,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("is the same again by its address", () =>
-    withPage("", async (page) => {
+    withOwnPage("", async (page) => {
       await answer_of(page, {});
       await page.getByRole("button", { name: "double machine.nodes" }).click();
       await answer_of(page, { "machine.nodes": "8" });
@@ -163,7 +175,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("saves what marti runs and sweeps", () =>
-    withPage("#machine.nodes=6&axis=cache.size&values=512 B,2 KiB", async (page) => {
+    withOwnPage("#machine.nodes=6&axis=cache.size&values=512 B,2 KiB", async (page) => {
       const { figures } = await answer_of(page, { "machine.nodes": "6" });
       const saved = await download(page, page.getByRole("link", { name: "Save as configuration" }));
       writeFileSync(join(work, saved.name), saved.text);
@@ -176,8 +188,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("simulates while a slider moves", () =>
-    withPage("", async (page) => {
-      await answer_of(page, {});
+    withPage(async (page) => {
       const slide = async (key, steps) => {
         await page.getByRole("slider", { name: `slide ${key}`, exact: true }).focus();
         for (let i = 0; i < Math.abs(steps); ++i) await page.keyboard.press(steps < 0 ? "ArrowLeft" : "ArrowRight");
@@ -223,7 +234,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("says how far a slow machine is", () =>
-    withPage("", async (page) => {
+    withOwnPage("", async (page) => {
       await answer_of(page, {});
       // Of a machine of the curve, or of none.
       assert.deepEqual(Object.keys(await page.evaluate(() => explore.server.progress())), ["part", "unit", "done", "of"]);
@@ -247,7 +258,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("saves a report of all machines", () =>
-    withPage("#machine.nodes=7", async (page) => {
+    withOwnPage("#machine.nodes=7", async (page) => {
       await answer_of(page, { "machine.nodes": "7" });
       const saved = await download(page, page.getByRole("button", { name: "Save as report" }));
       assert.equal(saved.name, "explored.html");
@@ -256,8 +267,7 @@ describe("the page of marti explore", () => {
     }));
 
   it("has a name for everything and fits a phone", () =>
-    withPage("", async (page) => {
-      await answer_of(page, {});
+    withPage(async (page) => {
       assert.deepEqual(await unnamed(page), []);
       await page.setViewportSize({ width: 360, height: 740 });
       assert.deepEqual(await overflow(page), { pixels: 0, elements: [] });
@@ -266,6 +276,7 @@ describe("the page of marti explore", () => {
         await page.waitForTimeout(3000);
         await page.screenshot({ path: join(process.env.MARTI_PICTURES, "explore.png"), fullPage: true });
       }
+      await page.setViewportSize(screen);
     }));
 
   it("can be neither read nor steered by a page of another origin", async () => {
@@ -329,7 +340,7 @@ describe("the page of marti explore", () => {
     `]);
     assert.equal(rebound.stdout.trim(), "403");
     // It still serves its own page.
-    await withPage("", (own) => answer_of(own, {}));
+    await withOwnPage("", (own) => answer_of(own, {}));
   });
 
   it("ends when the page asks for it", async () => {

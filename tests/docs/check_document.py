@@ -8,6 +8,7 @@ and key that the prose names. tests/docs/README.md says how a document marks wha
 """
 
 import argparse
+import hashlib
 import pathlib
 import re
 import shutil
@@ -55,9 +56,11 @@ def missing_line(shown, output, exact):
 class Runner:
     """Runs commands in one directory that has the configurations where the documents say they are."""
 
+    # Of commands that only print, by the command and by what they can read: documents share them.
+    outcomes = {}
+
     def __init__(self, program, source, directory):
         self.directory = directory
-        self.outcomes = {}
         tools = directory / ".tools"
         tools.mkdir()
         (tools / "marti").symlink_to(program)
@@ -67,15 +70,26 @@ class Runner:
         self.environment = {"PATH": f"{tools}:/usr/local/bin:/usr/bin:/bin", "HOME": str(directory),
                             "LC_ALL": "C.UTF-8", "OMP_NUM_THREADS": "1"}
 
+    def files(self):
+        """Every file in the directory, in short: the same where the same can be read."""
+        digest = hashlib.sha256()
+        for path in sorted(self.directory.rglob("*")):
+            if path.is_file() and not path.is_symlink():
+                content = path.read_bytes()
+                digest.update(f"{path.relative_to(self.directory)}\0{len(content)}\0".encode() + content)
+        return digest.hexdigest()
+
     def run(self, text):
-        """The exit status and the output. What only prints is not run twice."""
+        """The exit status and the output. What only prints is not run twice on the same files."""
         prints_only = " -o" not in text and ">" not in text and text.startswith("marti run")
-        if prints_only and text in self.outcomes:
-            return self.outcomes[text]
+        key = (text, self.files()) if prints_only else None
+        if key in self.outcomes:
+            return self.outcomes[key]
         done = subprocess.run(["bash", "-o", "pipefail", "-c", text], cwd=self.directory, env=self.environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600, check=False)
         outcome = (done.returncode, done.stdout.decode("utf-8", "replace"))
-        self.outcomes[text] = outcome
+        if key:
+            self.outcomes[key] = outcome
         return outcome
 
 
