@@ -57,7 +57,7 @@ TEST_F(GltfAnimation, AQuarterTurnAtHalfTimeIsFortyFiveDegrees) {
 }
 
 TEST_F(GltfAnimation, TheHierarchyIsAProductOfMatrices) {
-  rc::check("a chain of three moving nodes", [this] {
+  EXPECT_TRUE(rc::check("a chain of three moving nodes", [this] {
     const auto number = [] { return static_cast<float>(*rc::gen::inRange(-1000, 1001)) / 256.0F; };
     GltfFile file = GltfFile::square();
     file.json["nodes"] = {{{"children", {1}}}, {{"children", {2}}}, {{"mesh", 0}}};
@@ -99,7 +99,7 @@ TEST_F(GltfAnimation, TheHierarchyIsAProductOfMatrices) {
       }
       RC_ASSERT(nearest < 1e-7 * (1.0 + glm::length(wanted)));
     }
-  });
+  }));
 }
 
 /// The file without its animation, with the values of key frame `k` written into the nodes.

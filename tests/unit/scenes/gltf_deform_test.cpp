@@ -147,7 +147,7 @@ TEST_F(GltfDeform, JointsPullAndTheMeshNodeDoesNot) {
 }
 
 TEST_F(GltfDeform, AnimatedJointsGiveTheWeightedSumOfMatrices) {
-  rc::check("two joints, three sets of weights", [this] {
+  EXPECT_TRUE(rc::check("two joints, three sets of weights", [this] {
     GltfFile file = skinned_square();
     std::vector<std::vector<double>> weights(4, std::vector<double>(2, 0.0));
     for (int set = 0; set < 3; ++set) {
@@ -181,7 +181,7 @@ TEST_F(GltfDeform, AnimatedJointsGiveTheWeightedSumOfMatrices) {
                                 sum);
       RC_ASSERT(glm::length(scene.positions[vertex] - expected) < 1e-10);
     }
-  });
+  }));
 }
 
 TEST_F(GltfDeform, OneJointIsAParentBitForBit) {
