@@ -10,6 +10,7 @@
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/processors/naive_contexts.h"
@@ -116,7 +117,7 @@ class Pairs : public ::testing::TestWithParam<std::pair<std::size_t, std::size_t
 };
 
 TEST_P(Pairs, RunsOrIsRefusedWithTheKeysOfBoth) {
-  for (std::uint64_t seed = 1; seed <= 60 && !HasFailure(); ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::cases(60U) && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const auto [log, machine] = machine_with(random, first(), second());

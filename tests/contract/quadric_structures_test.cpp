@@ -13,6 +13,7 @@
 #include "accel/structure.h"
 #include "tests/contract/hostile.h"
 #include "tests/contract/hostile_quadrics.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/same_bits.h"
 
 namespace marti::tests {
@@ -112,7 +113,7 @@ TEST_P(MixedSoup, SameHitsAsBruteForce) {
                                           hostile_quadrics(soup.offset, 37, soup.huge)));
   QuadricRayMaker at_quadrics(contract.set(), 41);
   for (const QuadricAim aim : all_quadric_aims) {
-    for (int k = 0; k < 2500; ++k) {
+    for (int k = 0; k < test::cases(2500); ++k) {
       contract.compare(at_quadrics.make(aim));
       if (HasFatalFailure()) {
         return;
@@ -122,7 +123,7 @@ TEST_P(MixedSoup, SameHitsAsBruteForce) {
   if (soup.triangles) {
     RayMaker at_triangles(contract.set(), contract.root(), 43);
     for (const Aim aim : studies::stability::all_aims) {
-      for (int k = 0; k < 1500; ++k) {
+      for (int k = 0; k < test::cases(1500); ++k) {
         contract.compare(at_triangles.make(aim));
         if (HasFatalFailure()) {
           return;
@@ -130,8 +131,8 @@ TEST_P(MixedSoup, SameHitsAsBruteForce) {
       }
     }
   }
-  EXPECT_GT(contract.hits(), 10000U);
-  EXPECT_GT(contract.quadrics_hit(), 5000U);
+  EXPECT_GT(contract.hits(), test::cases(10000U));
+  EXPECT_GT(contract.quadrics_hit(), test::cases(5000U));
 }
 INSTANTIATE_TEST_SUITE_P(Structures, MixedSoup,
                          ::testing::Values(Soup{0.0, false, true}, Soup{0.0, false, false},
@@ -161,7 +162,7 @@ TEST(MixedContract, ScaleByPowersOfTwoIsExact) {
         options);
     EXPECT_EQ(structure->topology().nodes.size(), reference->topology().nodes.size());
     QuadricRayMaker maker(*unit_set, 5);
-    for (int k = 0; k < 8000; ++k) {
+    for (int k = 0; k < test::cases(8000); ++k) {
       Ray ray = maker.make(all_quadric_aims[static_cast<std::size_t>(k) % all_quadric_aims.size()]);
       const Hit expected = reference->closest(ray);
       ray.origin *= factor;
@@ -187,7 +188,7 @@ TEST(MixedContract, CountingChangesNothing) {
     accel::visit_structure(*structure, [&](const auto& concrete) {
       QuadricRayMaker maker(*set, 7);
       accel::NullVisitor visitor;
-      for (int k = 0; k < 4000; ++k) {
+      for (int k = 0; k < test::cases(4000); ++k) {
         const Ray ray = maker.make(all_quadric_aims[static_cast<std::size_t>(k) % all_quadric_aims.size()]);
         const Hit expected = concrete.closest(ray, visitor);
         ASSERT_TRUE(test::same_bits(expected, concrete.template closest<accel::Counted>(ray, visitor)));

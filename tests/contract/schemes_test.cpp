@@ -99,10 +99,10 @@ TEST_P(Schemes, TakesTheStepsOfTheLogAndItsTimesAddUp) {
 
 TEST_P(Schemes, TouchesTheLinesThatOneNodeTouches) {
   for_random_cases("references are one node's", [](TimedCase& c, Random& /*random*/) {
-    const auto lines = lines_of(replay::replay(c.log, c.machine, c.options));
     if (c.machine.build.sharing != Sharing::given) {
       return;  // nodes that build read more
     }
+    const auto lines = lines_of(replay::replay(c.log, c.machine, c.options));
     c.machine.scheme = Scheme::image;
     c.machine.clusters = 1;
     c.machine.nodes = 1;

@@ -131,6 +131,9 @@ std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corne
         if (built.structure->kind() == "none") {
           continue;  // the oracle itself
         }
+        if (built.structure->topology().nodes.size() == 1 && k % 8 != 0) {
+          continue;  // its walk is the oracle's loop
+        }
         const auto where = [&] {
           std::ostringstream text;
           text.precision(17);
@@ -164,8 +167,8 @@ std::vector<accel::TriangleCorners> corners_of(std::string_view scene) {
 }
 
 // Rays of each of the 9 classes. In the long run 9 x 5,000 x 3 scenes x 4 parts and 9 x 5,000 x 8 soups x 2
-// parts are 1,260,000 rays; in the short run a sixth.
-const auto rays_of_class = static_cast<std::uint32_t>(test::stride(800, 5000));
+// parts are 1,260,000 rays; in the short run a sixth, and a fifth of that under the sanitizers.
+const auto rays_of_class = static_cast<std::uint32_t>(test::cases(test::stride(800, 5000)));
 
 class SceneContract : public ::testing::TestWithParam<std::tuple<std::string, unsigned>> {};
 
@@ -235,6 +238,12 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
   const std::vector<accel::TriangleCorners> unit = studies::stability::hostile_soup(0.0, 3);
   const auto unit_set = std::make_shared<const TriangleSet>(unit);
   const auto reference = accel::make_structure("octree", unit_set);
+  RayMaker maker(*unit_set, reference->bounds(), 5);
+  std::vector<std::pair<Ray, Hit>> expected;
+  for (int k = 0; k < test::cases(20000); ++k) {
+    const Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
+    expected.emplace_back(ray, reference->closest(ray));
+  }
   for (const int power : {-60, -30, -1, 1, 30, 60}) {
     std::vector<accel::TriangleCorners> scaled = unit;
     for (auto& triangle : scaled) {
@@ -247,16 +256,13 @@ TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
       const auto structure = accel::make_structure(kind, scaled_set);
       EXPECT_EQ(structure->topology().nodes.size(),
                 accel::make_structure(kind, unit_set)->topology().nodes.size());
-      RayMaker maker(*unit_set, reference->bounds(), 5);
-      for (int k = 0; k < 20000; ++k) {
-        Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
-        const Hit expected = reference->closest(ray);
+      for (auto [ray, hit] : expected) {
         ray.origin *= std::ldexp(1.0, power);
         ray.t_min = std::ldexp(ray.t_min, power);
         ray.t_max = std::ldexp(ray.t_max, power);
         Hit got = structure->closest(ray);
         got.t = std::ldexp(got.t, -power);
-        ASSERT_TRUE(test::same_bits(expected, got)) << kind << ", 2^" << power;
+        ASSERT_TRUE(test::same_bits(hit, got)) << kind << ", 2^" << power;
       }
     }
   }
@@ -316,7 +322,7 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
 
 TEST_P(DegenerateScene, SameHitsAsBruteForce) {
   std::vector<accel::TriangleCorners> scene = degenerate_scene(GetParam());
-  const std::uint32_t rays = scene.size() < 2000 ? 1000U : 100U;
+  const auto rays = static_cast<std::uint32_t>(scene.size() < 2000 ? test::stride(100, 1000) : 100);
   const std::uint64_t hits = compare_with_brute_force(std::move(scene), rays, 17);
   if (GetParam() == 1 || GetParam() == 9) {
     EXPECT_EQ(hits, 0U);

@@ -12,6 +12,7 @@
 #include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 #include "tests/unit/accel/walk_check.h"
 
 namespace marti::tests {
@@ -55,7 +56,7 @@ TEST(Bsp, LeavesListWhatMeetsThem) {
 
 TEST(Bsp, WalksFrontToBackThroughTheLeavesOnTheRay) {
   const Bsp bsp = Bsp::build(set_of(studies::stability::hostile_soup(0.0, 4)), {3, 5});
-  EXPECT_GT(check_walks(bsp, boxes_of(bsp), 2), 20000U);
+  EXPECT_GT(check_walks(bsp, boxes_of(bsp), 2), test::cases(20000U));
 }
 
 BspOptions pushing(std::uint32_t max_objects, std::uint32_t max_level) {
@@ -101,7 +102,7 @@ TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
   RayMaker maker(bsp.triangles(), bsp.bounds(), 6);
   const double margin = 8.0 * bsp.delta();
   std::uint64_t visited = 0;
-  for (int k = 0; k < 6000 && !::testing::Test::HasFailure(); ++k) {
+  for (int k = 0; k < test::cases(6000) && !::testing::Test::HasFailure(); ++k) {
     const accel::Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
     Recorder recorder;
     const accel::Hit hit = bsp.closest(ray, recorder);
@@ -117,14 +118,13 @@ TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
         last_in = exact.in;
       }
     }
-    for (std::uint32_t n = 0; n < boxes.size(); ++n) {
-      const Inside on = inside(ray, boxes[n], -margin);
-      if (bsp.topology().nodes[n].leaf && on.in < on.out && (!hit.found() || on.in < hit.t)) {
+    each_crossed(bsp.topology(), boxes, ray, -margin, [&](std::uint32_t n, const Inside& on) {
+      if (bsp.topology().nodes[n].leaf && (!hit.found() || on.in < hit.t)) {
         ASSERT_TRUE(met.contains(n)) << "a leaf on the ray was left out";
       }
-    }
+    });
   }
-  EXPECT_GT(visited, 20000U);
+  EXPECT_GT(visited, test::cases(20000U));
 }
 
 // Both walks meet the same leaves, except those that a ray only touches.
@@ -135,7 +135,7 @@ TEST(Bsp, BothWalksVisitTheSameLeaves) {
   RayMaker maker(*triangles, recursive.bounds(), 16);
   std::uint64_t leaves = 0;
   std::uint64_t different = 0;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; k < test::cases(20000); ++k) {
     const accel::Ray ray = maker.make(Aim::random);
     Recorder a;
     Recorder b;
@@ -146,7 +146,7 @@ TEST(Bsp, BothWalksVisitTheSameLeaves) {
     leaves += a.visits.size();
     different += a.visits == b.visits ? 0U : 1U;
   }
-  EXPECT_GT(leaves, 100000U);
+  EXPECT_GT(leaves, test::cases(100000U));
   EXPECT_LE(different, 20U);
 }
 

@@ -185,12 +185,11 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
       ASSERT_LE(on.in, on.out) << "a node the ray does not meet";
       leaves += visit.leaf ? 1 : 0;
     }
-    for (std::uint32_t n = 1; n < boxes.size(); ++n) {
-      const Inside on = inside(ray, boxes[n], 0.0);
-      if (on.in < on.out && (!hit.found() || on.in < hit.t - 1e-4 * size)) {
+    each_crossed(bvh.topology(), boxes, ray, 0.0, [&](std::uint32_t n, const Inside& on) {
+      if (n != 0 && (!hit.found() || on.in < hit.t - 1e-4 * size)) {
         ASSERT_TRUE(visited.contains(n)) << "a node on the ray was left out";
       }
-    }
+    });
   }
   EXPECT_GT(leaves, 2000U);
 }

@@ -9,6 +9,7 @@
 
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 #include "tests/unit/accel/walk_check.h"
 
 namespace marti::tests {
@@ -70,7 +71,7 @@ TEST(Grid, WalksFrontToBackThroughTheCellsOnTheRay) {
   for (const auto& resolution : {std::array<std::uint32_t, 3>{16, 16, 16}, {13, 1, 40}}) {
     const Grid grid = Grid::build(set_of(studies::stability::hostile_soup(0.0, 4)), with(resolution));
     const int most = static_cast<int>(resolution[0] + resolution[1] + resolution[2]);
-    EXPECT_GT(check_walks(grid, boxes_of(grid), most), 20000U);
+    EXPECT_GT(check_walks(grid, boxes_of(grid), most), test::cases(20000U));
   }
 }
 

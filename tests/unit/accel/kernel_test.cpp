@@ -8,6 +8,7 @@
 
 #include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 
 namespace marti::tests {
 namespace {
@@ -66,7 +67,7 @@ TEST(Kernel, HitsLieOnTheTriangleEvenEdgeOn) {
   Random random(13);
   int hits = 0;
   double worst = 0.0;
-  for (int k = 0; k < 1000000; ++k) {
+  for (int k = 0; k < test::cases(1000000); ++k) {
     const glm::dvec3 a = random.direction();
     const glm::dvec3 b = random.direction();
     glm::dvec3 c = random.direction();
@@ -90,7 +91,7 @@ TEST(Kernel, HitsLieOnTheTriangleEvenEdgeOn) {
     const glm::dvec3 on_triangle = hit.u * a + hit.v * b + hit.w * c;
     worst = std::max(worst, glm::length(on_ray - on_triangle));
   }
-  EXPECT_GT(hits, 100000);
+  EXPECT_GT(hits, test::cases(100000));
   EXPECT_LT(worst, 0x1p-40);
   RecordProperty("worst", std::to_string(std::log2(worst)));
 }

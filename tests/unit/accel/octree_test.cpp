@@ -8,6 +8,7 @@
 #include "accel/box_overlap.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 #include "tests/unit/accel/walk_check.h"
 
 namespace marti::tests {
@@ -90,7 +91,7 @@ TEST(Octree, LeavesListWhatMeetsThem) {
 TEST(Octree, WalksFrontToBackThroughTheLeavesOnTheRay) {
   const auto triangles = set_of(studies::stability::hostile_soup(0.0, 4));
   const Octree octree = Octree::build(triangles, {3, 7});
-  EXPECT_GT(check_walks(octree, boxes_of(octree), 4), 20000U);
+  EXPECT_GT(check_walks(octree, boxes_of(octree), 4), test::cases(20000U));
 }
 
 // The walk on vectors and the walk for any scalar take the same steps and find the same hits.

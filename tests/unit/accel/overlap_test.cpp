@@ -7,6 +7,7 @@
 
 #include "accel/box_overlap.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 
 namespace marti::tests {
 namespace {
@@ -106,15 +107,15 @@ int compare(std::int64_t range, std::int64_t half_range, double offset, int case
 }
 
 TEST(BoxOverlap, EqualsExactArithmeticOnIntegers) {
-  EXPECT_GT(compare(8, 4, 0.0, 200000), 20000);
-  EXPECT_GT(compare(100, 60, 0.0, 200000), 20000);
-  EXPECT_GT(compare(3000, 2000, 1048576.0, 200000), 20000);
+  EXPECT_GT(compare(8, 4, 0.0, test::cases(200000)), test::cases(20000));
+  EXPECT_GT(compare(100, 60, 0.0, test::cases(200000)), test::cases(20000));
+  EXPECT_GT(compare(3000, 2000, 1048576.0, test::cases(200000)), test::cases(20000));
 }
 
 // With large numbers the products round: never a false "no".
 TEST(BoxOverlap, NeverMissesWhatTouches) {
   Random random(77);
-  for (int k = 0; k < 200000; ++k) {
+  for (int k = 0; k < test::cases(200000); ++k) {
     const double size = std::ldexp(1.0, static_cast<int>(random.below(120)) - 60);
     const glm::dvec3 center = size * random.direction() * 4.0;
     const glm::dvec3 half = size * (glm::dvec3(0.1) + 0.4 * random.in_box(glm::dvec3(0.0), glm::dvec3(1.0)));

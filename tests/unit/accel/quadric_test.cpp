@@ -13,6 +13,7 @@
 #include "accel/primitive_overlap.h"
 #include "sim/error.h"
 #include "tests/contract/hostile_quadrics.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/user_error.h"
 
 namespace marti::tests {
@@ -134,7 +135,7 @@ TEST(QuadricKernel, AcceptedHitsAreOnTheSurface) {
     const TriangleSet set = set_of_quadrics(hostile_quadrics(offset, 51));
     QuadricRayMaker maker(set, 53);
     std::uint64_t hits = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < test::cases(4000); ++k) {
       const Ray ray = maker.make(all_quadric_aims[static_cast<std::size_t>(k) % all_quadric_aims.size()]);
       for (std::uint32_t id = 0; id < set.size(); id += 3) {
         const QuadricShape& shape = set.quadric(id);
@@ -148,7 +149,7 @@ TEST(QuadricKernel, AcceptedHitsAreOnTheSurface) {
         }
       }
     }
-    EXPECT_GT(hits, 10000U);
+    EXPECT_GT(hits, test::cases(10000U));
   }
 }
 
@@ -160,7 +161,7 @@ TEST(QuadricKernel, FindsTheExactRoots) {
   int agreed = 0;
   int misses = 0;
   int doubtful = 0;
-  for (int k = 0; k < 3000; ++k) {
+  for (int k = 0; k < test::cases(3000); ++k) {
     const Ray ray = maker.make(all_quadric_aims[static_cast<std::size_t>(k) % all_quadric_aims.size()]);
     for (std::uint32_t id = 0; id < set.size(); id += 3) {
       const QuadricShape& shape = set.quadric(id);
@@ -203,9 +204,9 @@ TEST(QuadricKernel, FindsTheExactRoots) {
       ++agreed;
     }
   }
-  EXPECT_GT(agreed, 8000);
-  EXPECT_GT(misses, 50000);
-  EXPECT_LT(doubtful, 20000);
+  EXPECT_GT(agreed, test::cases(8000));
+  EXPECT_GT(misses, test::cases(50000));
+  EXPECT_LT(doubtful, test::cases(20000));
 }
 
 TEST(QuadricKernel, GivesTheParameter) {

@@ -20,6 +20,7 @@
 #include "accel/triangles.h"
 #include "scenes/scene.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/same_bits.h"
 
 namespace marti::tests {
@@ -145,6 +146,28 @@ inline std::vector<std::uint32_t> parents_of(const std::vector<accel::TopologyNo
   return parent;
 }
 
+/// Calls use(node, inside) for each node whose box, larger by `margin` on all sides, the ray is in for a
+/// while. A box holds those of the node's children, so what is below a box that the ray misses need not be
+/// looked at.
+template <class Use>
+void each_crossed(const accel::Topology& topology, const std::vector<scenes::Bounds>& boxes,
+                  const accel::Ray& ray, double margin, const Use& use) {
+  std::vector<std::uint32_t> left = {0};
+  while (!left.empty()) {
+    const std::uint32_t number = left.back();
+    left.pop_back();
+    const Inside on = inside(ray, boxes[number], margin);
+    if (!(on.in < on.out)) {
+      continue;
+    }
+    use(number, on);
+    const accel::TopologyNode& node = topology.nodes[number];
+    for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
+      left.push_back(node.first + child);
+    }
+  }
+}
+
 /// Front to back, at most `most_children` children of a branch, no leaf that the ray does not meet, none left
 /// out. Returns how many leaves were visited.
 template <class Structure>
@@ -184,18 +207,13 @@ std::uint64_t check_walks(const Structure& structure, const std::vector<scenes::
         }
       }
     }
-    for (std::uint32_t n = 0; n < boxes.size(); ++n) {
-      if (!nodes[n].leaf) {
-        continue;
-      }
-      const Inside on = inside(ray, boxes[n], -margin);
-      const bool before_hit = !hit.found() || on.in < hit.t;
-      if (on.in < on.out && before_hit) {
+    each_crossed(structure.topology(), boxes, ray, -margin, [&](std::uint32_t n, const Inside& on) {
+      if (nodes[n].leaf && (!hit.found() || on.in < hit.t)) {
         ASSERT_TRUE(visited.contains(n)) << "a leaf on the ray was left out";
       }
-    }
+    });
   };
-  for (int k = 0; k < 6000 && !::testing::Test::HasFatalFailure(); ++k) {
+  for (int k = 0; k < test::cases(6000) && !::testing::Test::HasFatalFailure(); ++k) {
     check(maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]));
   }
   return leaves;
@@ -205,7 +223,7 @@ std::uint64_t check_walks(const Structure& structure, const std::vector<scenes::
 template <class Structure>
 void check_counting(const Structure& structure) {
   RayMaker maker(structure.triangles(), structure.bounds(), 9);
-  for (int k = 0; k < 60000; ++k) {
+  for (int k = 0; k < test::cases(60000); ++k) {
     const accel::Ray ray = maker.make(
         studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
     Recorder plain;

@@ -6,6 +6,7 @@
 
 #include "memory/dram_presets.h"
 #include "sim/key_error.h"
+#include "tests/support/long_tests.h"
 #include "tests/unit/memory/dram_streams.h"
 #include "tests/unit/memory/naive_dram.h"
 
@@ -104,7 +105,7 @@ std::vector<test::StreamAccess> random_accesses(Random& random, const DramConfig
 }
 
 TEST(Dram, AgreesWithALookAtEveryCycle) {
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (std::uint64_t seed = 0; seed < marti::test::cases(400U); ++seed) {
     Random random(seed);
     const DramConfig config = random_config(random);
     const std::int64_t bursts = random.pick(1, 2);
@@ -121,7 +122,7 @@ TEST(Dram, AgreesWithALookAtEveryCycle) {
 }
 
 TEST(Dram, CountsEveryBurstOnce) {
-  for (std::uint64_t seed = 1000; seed < 1100; ++seed) {
+  for (std::uint64_t seed = 1000; seed < 1000 + marti::test::cases(100U); ++seed) {
     Random random(seed);
     const DramConfig config = random_config(random);
     const std::int64_t bursts = random.pick(1, 2);
@@ -152,7 +153,7 @@ TEST(Dram, CountsEveryBurstOnce) {
 // A channel that is told when the next access arrives serves what meets no other at once: with the times and
 // counts of one that decides command by command.
 TEST(Dram, AccessesThatMeetNoOtherAreServedAsAllAre) {
-  for (std::uint64_t seed = 2000; seed < 2300; ++seed) {
+  for (std::uint64_t seed = 2000; seed < 2000 + marti::test::cases(300U); ++seed) {
     Random random(seed);
     DramConfig config = random_config(random);
     config.policy = DramPolicy::frfcfs;

@@ -15,6 +15,7 @@
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/naive_pipeline.h"
 #include "tests/support/naive_space.h"
 #include "tests/support/random_flow.h"
@@ -44,7 +45,8 @@ class Watched final : public Observer {
   void spent(std::uint32_t node, NodeState state, sim::Ticks from, sim::Ticks to, PixelPlace pixel) override {
     recorder_.spent(node, state, from, to, pixel);
     if (state == NodeState::working) {
-      work.push_back({node, from, to});
+      work.resize(std::max<std::size_t>(work.size(), node + 1));
+      work[node].push_back({from, to});
     } else if (state == NodeState::lock_wait || state == NodeState::dispatch_wait ||
                state == NodeState::message_wait || state == NodeState::queue_full_wait) {
       let_go.emplace(node, to);
@@ -52,11 +54,19 @@ class Watched final : public Observer {
   }
   void end(sim::Ticks time) override { recorder_.end(time); }
 
+  // Whether a node worked from `from` to `to` without a break.
+  [[nodiscard]] bool worked(std::uint32_t node, sim::Ticks from, sim::Ticks to) const {
+    if (node >= work.size()) {
+      return false;
+    }
+    const auto behind = std::ranges::upper_bound(work[node], from, {}, &Work::from);
+    return behind != work[node].begin() && to <= std::prev(behind)->to;
+  }
+
   struct Work {
-    std::uint32_t node;
     sim::Ticks from, to;
   };
-  std::vector<Work> work;
+  std::vector<std::vector<Work>> work;                    // of each node, in the order of time
   std::set<std::pair<std::uint32_t, sim::Ticks>> let_go;  // when other nodes or the host ended a node's wait
 
  private:
@@ -143,11 +153,13 @@ bool every_transaction_takes_time(const MachineConfig& machine) {
 }
 
 TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
-  for (std::uint64_t seed = 0; seed < 1700; ++seed) {
+  const int slow = test::cases(1000);
+  const int flow = slow + test::cases(200);
+  for (int seed = 0; seed < flow + test::cases(500); ++seed) {
     SCOPED_TRACE(seed);
-    test::Random random(seed);
-    const Case c = seed < 1000   ? random_case(random)
-                   : seed < 1200 ? slow_second_level(random)
+    test::Random random(static_cast<std::uint64_t>(seed));
+    const Case c = seed < slow   ? random_case(random)
+                   : seed < flow ? slow_second_level(random)
                                  : random_flow(random);
     PathRecorder recorder(unlimited, PathPieces::no_fold);
     Watched watched(recorder);
@@ -180,9 +192,7 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
       const bool prefetch = !next && piece.kind == PathKind::cache_access;
       next = piece;
       ASSERT_TRUE(!is_own_work(piece.kind) || prefetch ||
-                  std::any_of(watched.work.begin(), watched.work.end(), [&](const Watched::Work& work) {
-                    return work.node == piece.owner.node && work.from <= piece.from && piece.to <= work.to;
-                  }));
+                  watched.worked(piece.owner.node, piece.from, piece.to));
     });
     EXPECT_EQ(at, 0);
     if (c.machine.placement == Placement::shared &&
@@ -203,7 +213,7 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
 }
 
 TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::cases(200U); ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     const WorkLog log = test::small_log(random, 8);
@@ -228,7 +238,7 @@ TEST(CriticalPath, OfOneNodeOnAnIdealInterconnectIsHowItsTimeDivides) {
 }
 
 TEST(CriticalPath, OfOneNodeWithAllOfSpaceIsHowItsTimeDivides) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::cases(60U); ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     const WorkLog log = test::random_ray_trees(random, 6, 6, 12, 4);
@@ -320,7 +330,7 @@ std::vector<test::NaivePiece> pieces_of(const PathRecorder& recorder) {
 }
 
 TEST(CriticalPath, ASecondWayToFindItFindsTheSame) {
-  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::cases(120U); ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     const WorkLog log = test::small_log(random, 8);
@@ -354,7 +364,7 @@ void make_plain_flow(test::Random& random, MachineConfig& machine) {
 
 TEST(CriticalPath, OfMovingRaysIsThatOfASecondModel) {
   std::int64_t others = 0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::cases(400U); ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     Case c = random_flow(random);
@@ -371,7 +381,7 @@ TEST(CriticalPath, OfMovingRaysIsThatOfASecondModel) {
     }
     others += recorder.path().node_changes;
   }
-  EXPECT_GT(others, 1000);
+  EXPECT_GT(others, test::cases(1000));
 }
 
 // A frame of one row whose pixels are one ray and one visit of the root each.
@@ -418,7 +428,7 @@ TEST(CriticalPath, GoesOverTheNodesInTheOrderInWhichTheBusServesThem) {
 }
 
 TEST(CriticalPath, FoldingPiecesChangesNoSum) {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < test::cases(300U); ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
     const Case c = seed % 3 == 0 ? random_flow(random) : random_case(random);

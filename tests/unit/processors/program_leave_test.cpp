@@ -10,6 +10,7 @@
 #include "processors/program/shading.h"
 #include "program_scenes.h"
 #include "studies/stability/icosphere.h"
+#include "tests/support/long_tests.h"
 
 namespace marti::processors {
 
@@ -60,7 +61,7 @@ TEST(LeavingAPlane, NoRayMeetsTheBoardItLeft) {
         scene.triangles.push_back({{4 * k + 2, 4 * k + 3, 4 * k}, 0, k});
       }
       const test::Built built(scene, "octree");
-      for (int ray = 0; ray < 5000; ++ray) {
+      for (int ray = 0; ray < marti::test::cases(5000); ++ray) {
         glm::dvec3 eye(unit(random) * 9.0, unit(random) * 9.0, unit(random) * 9.0);
         eye[axis] = height + (ray % 2 == 0 ? 5.4 : -5.4);
         glm::dvec3 aim(unit(random) * 3.9, unit(random) * 3.9, unit(random) * 3.9);
@@ -93,7 +94,7 @@ TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
   int passed = 0;
   accel::visit_structure(*built.structure, [&](const auto& concrete) {
     accel::NullVisitor visitor;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < marti::test::cases(20000); ++i) {
       const glm::dvec3 eye = direction() * 4.0;
       const glm::dvec3 d = glm::normalize(direction() * 0.5 - eye);
       const accel::Hit hit = concrete.template closest<float>({eye, d}, visitor);
@@ -118,7 +119,7 @@ TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
       ++left;
     }
   });
-  EXPECT_GT(left, 19000);
+  EXPECT_GT(left, marti::test::cases(19000));
   EXPECT_LT(met, left / 1000);
   EXPECT_EQ(passed, 0);
 }

@@ -11,6 +11,7 @@
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/valid_log.h"
 
 namespace marti::processors {
@@ -67,7 +68,7 @@ TEST_P(LeavingQuadrics, SpheresDoNotShadowThemselves) {
   const test::Built built(scene_of({{.kind = QuadricKind::sphere, .base = center, .radius = scale}}),
                           "octree");
   Directions random(7);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < marti::test::cases(20000); ++i) {
     const glm::dvec3 eye = center + random.any() * (scale * (1.5 + 9.0 * random.unit()));
     // Grazing hits too.
     const glm::dvec3 aim = center + random.any() * (0.9999 * scale);
@@ -112,7 +113,7 @@ TEST_P(LeavingQuadrics, CylindersAndConesDoNotShadowThemselves) {
     const glm::dvec3 axis(shape.axis[0], shape.axis[1], shape.axis[2]);
     Directions random(11);
     int outwards = 0;
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < marti::test::cases(5000); ++i) {
       const glm::dvec3 aim = center + (2.0 * random.unit() - 1.0) * shape.half * axis;
       const glm::dvec3 eye = aim + 3.0 * scale * random.any();
       const accel::Ray ray{eye, glm::normalize(aim - eye)};
@@ -135,7 +136,7 @@ TEST_P(LeavingQuadrics, CylindersAndConesDoNotShadowThemselves) {
       ASSERT_FALSE(built.structure->occluded(leaving(surface, out)))
           << radius << " " << tip_radius << " " << i;
     }
-    EXPECT_GT(outwards, 2000);
+    EXPECT_GT(outwards, marti::test::cases(2000));
   }
 }
 

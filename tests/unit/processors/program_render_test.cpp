@@ -71,7 +71,11 @@ TEST_P(AnyFrames, DoNotDependOnThreadsRecordingOrStructure) {
   EXPECT_EQ(one.hit_hash, plain.hit_hash);
 
   for (const std::string_view kind : accel::structure_kinds()) {
-    const Frame other = Built(octree.scene, kind).render(options, 2);
+    const Built built(octree.scene, kind);
+    if (kind == "none" && built.triangles->size() > 2000) {
+      continue;  // random scenes and small ones compare images with those of brute force
+    }
+    const Frame other = built.render(options, 2);
     EXPECT_TRUE(same_bytes(one.image, other.image)) << kind;
     EXPECT_EQ(one.hit_hash, other.hit_hash) << kind;
     EXPECT_EQ(one.rays.traced, other.rays.traced) << kind;

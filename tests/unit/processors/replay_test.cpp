@@ -124,40 +124,6 @@ RC_GTEST_PROP(Replay, ObserversAreToldAsMuchOfAStrippedLog, (std::uint64_t seed)
   RC_ASSERT(whole.told == less.told);
 }
 
-RC_GTEST_PROP(Replay, TheOrderOfTheFirstEventsDoesNotMatter, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const WorkLog log = test::random_log(random, 9, 7);
-  MachineConfig machine = test::random_machine(random);
-  test::add_random_second_level(random, machine);
-  test::expect_equal(replay::replay(log, machine),
-                     replay::replay(log, machine, {.start_seed = random() | 1U}));
-  RC_ASSERT(!::testing::Test::HasFatalFailure());
-}
-
-RC_GTEST_PROP(Replay, ScalingEveryDurationScalesEveryTimeExactly, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const WorkLog log = test::random_log(random, 8, 8);
-  MachineConfig machine = test::random_machine(random);
-  test::add_random_second_level(random, machine);
-  const MachineResult base = replay::replay(log, machine);
-  for (std::int64_t scale = 10; scale <= 1'000'000'000; scale *= 10) {
-    MachineConfig slow = machine;
-    for (sim::Clock* clock : {&slow.clock, &slow.interconnect.clock, &slow.banks.clock, &slow.host.clock,
-                              &slow.local.clock, &slow.network.clock}) {
-      *clock = sim::Clock::from_period(clock->period() * scale);
-    }
-    const MachineResult scaled = replay::replay(log, slow);
-    RC_ASSERT(scaled.end == base.end * scale);
-    RC_ASSERT(scaled.events == base.events);
-    for (std::size_t n = 0; n < base.nodes.size(); ++n) {
-      RC_ASSERT(scaled.nodes[n].finish == base.nodes[n].finish * scale);
-      for (std::size_t i = 0; i < activities; ++i) {
-        RC_ASSERT(scaled.nodes[n].time[i] == base.nodes[n].time[i] * scale);
-      }
-    }
-  }
-}
-
 // Compute time of the whole log, from the counts of the log itself.
 sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
   const StepTicks ticks = step_ticks(machine, log);
