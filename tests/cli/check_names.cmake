@@ -1,7 +1,7 @@
 # cmake -P check_names.cmake -- ROOT: does each file stand in the namespace of its folder, in processors/ and studies/ of
 # its room, and do no two types of a namespace's headers have one name? If no file includes both headers the compiler
-# does not notice: the linker then uses the destructor of one type for the other. And in the tests, is every rc::check() asked for
-# its result? It prints a failure and returns false; the test goes on. All faults are listed.
+# does not notice: the linker then uses the destructor of one type for the other. And does every test ask for the result of
+# its rc::check()? That prints a failure and returns false; the test goes on. All faults are listed.
 cmake_minimum_required(VERSION 3.25)
 
 math(EXPR last "${CMAKE_ARGC} - 1")
@@ -45,6 +45,7 @@ foreach(folder IN ITEMS sim scenes accel memory processors studies)
 endforeach()
 
 file(GLOB_RECURSE files RELATIVE "${root}" "${root}/tests/*.h" "${root}/tests/*.cpp")
+list(FILTER files EXCLUDE REGEX "/fixtures/")
 foreach(file IN LISTS files)
   file(STRINGS "${root}/${file}" lines REGEX "^ *rc::check[(]")
   if(lines)
