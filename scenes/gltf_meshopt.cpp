@@ -1,6 +1,5 @@
 #include "scenes/gltf_meshopt.h"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -69,7 +68,7 @@ class ViewDecompressor {
     if (extension.Has(key) && !given) {
       fail("have a " + std::string(key) + " that is no number");
     }
-    if (!(value >= 0.0 && value <= 4294967295.0 && value == std::floor(value))) {
+    if (!(value >= 0.0)) {  // json_fault() has seen to it that it is whole and fits
       fail("need a whole number as " + std::string(key));
     }
     return static_cast<std::uint64_t>(value);

@@ -173,28 +173,29 @@ TEST(Meshopt, EveryFaultIsRefused) {
     json value;
     const char* reason;
   };
-  const std::vector<Fault> faults = {{"buffer", 9, "are in buffer 9, but the file has 2"},
-                                     {"buffer", -1, "need a whole number as buffer"},
-                                     {"buffer", "0", "have a buffer that is no number"},
-                                     {"buffer", 1, "their buffer is too short: 0 bytes"},
-                                     {"byteOffset", 1U << 30U, "their buffer is too short"},
-                                     {"byteLength", 1U << 30U, "their buffer is too short"},
-                                     {"byteLength", 1.5, "need a whole number as byteLength"},
-                                     {"byteLength", 10, "are damaged"},
-                                     {"byteOffset", 5, "are damaged"},
-                                     {"count", 0, "are 0 elements"},
-                                     {"count", 200000000, "are 200000000 elements; 1 to"},
-                                     {"count", 4000000000U, "need a whole number as count"},
-                                     {"count", 63, "are 756 bytes when decompressed, but the view has 768"},
-                                     {"byteStride", 0, "which the mode ATTRIBUTES does not allow"},
-                                     {"byteStride", 6, "which the mode ATTRIBUTES does not allow"},
-                                     {"byteStride", 260, "which the mode ATTRIBUTES does not allow"},
-                                     {"byteStride", 24, "are 1536 bytes when decompressed"},
-                                     {"mode", "POINTS", "are of the mode 'POINTS'"},
-                                     {"mode", 3, "are of the mode ''"},
-                                     {"mode", "TRIANGLES", "which the mode TRIANGLES does not allow"},
-                                     {"filter", "OCTAHEDRAL", "have the filter 'OCTAHEDRAL'"},
-                                     {"filter", "COLOR", "have the filter 'COLOR'"}};
+  const std::vector<Fault> faults = {
+      {"buffer", 9, "are in buffer 9, but the file has 2"},
+      {"buffer", -1, "need a whole number as buffer"},
+      {"buffer", "0", "have a buffer that is no number"},
+      {"buffer", 1, "their buffer is too short: 0 bytes"},
+      {"byteOffset", 1U << 30U, "their buffer is too short"},
+      {"byteLength", 1U << 30U, "their buffer is too short"},
+      {"byteLength", 1.5, "byteLength is 1.5, which is no whole number"},
+      {"byteLength", 10, "are damaged"},
+      {"byteOffset", 5, "are damaged"},
+      {"count", 0, "are 0 elements"},
+      {"count", 200000000, "are 200000000 elements; 1 to"},
+      {"count", 4000000000U, "count is 4000000000, which is no whole number of at most"},
+      {"count", 63, "are 756 bytes when decompressed, but the view has 768"},
+      {"byteStride", 0, "which the mode ATTRIBUTES does not allow"},
+      {"byteStride", 6, "which the mode ATTRIBUTES does not allow"},
+      {"byteStride", 260, "which the mode ATTRIBUTES does not allow"},
+      {"byteStride", 24, "are 1536 bytes when decompressed"},
+      {"mode", "POINTS", "are of the mode 'POINTS'"},
+      {"mode", 3, "have a mode that is no text"},
+      {"mode", "TRIANGLES", "which the mode TRIANGLES does not allow"},
+      {"filter", "OCTAHEDRAL", "have the filter 'OCTAHEDRAL'"},
+      {"filter", "COLOR", "have the filter 'COLOR'"}};
   const SceneFolder folder;
   const GltfFile good = with_meshopt(RandomMesh(5, 7), "TRIANGLES");
   for (const Fault& fault : faults) {
@@ -202,7 +203,8 @@ TEST(Meshopt, EveryFaultIsRefused) {
     const auto at = json::json_pointer("/bufferViews/0/extensions/EXT_meshopt_compression");
     file.json[at][fault.place] = fault.value;
     const std::string message = folder.refusal("a.glb", file.glb());
-    EXPECT_EQ(message.rfind("a.glb: buffer view 0: its compressed data ", 0), 0U)
+    EXPECT_TRUE(message.starts_with("a.glb: buffer view 0: its compressed data ") ||
+                message.starts_with("a.glb: it is no valid glTF 2.0: /bufferViews/0/extensions/"))
         << fault.place << " " << fault.value << ": " << message;
     EXPECT_TRUE(says(message, fault.reason)) << message;
   }
