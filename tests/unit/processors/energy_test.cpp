@@ -275,6 +275,7 @@ TEST(FittedCaches, AreRefusedWhereNothingWasFitted) {
             "energy.l1_area");
   machine.cache.cache.line = 16;
   EXPECT_TRUE(refusal().starts_with("cache.line: the energy of a cache of 1 KiB with lines of 16 bytes"));
+  machine.cache.cache.line = 32;
   machine.energy.figures.l1 = {1.0, 1.0, by_fit};
   EXPECT_NE(refusal(), "no UserError");
   machine.energy.figures.l1.area = 0.0;
