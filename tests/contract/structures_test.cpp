@@ -322,7 +322,8 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
 
 TEST_P(DegenerateScene, SameHitsAsBruteForce) {
   std::vector<accel::TriangleCorners> scene = degenerate_scene(GetParam());
-  const auto rays = static_cast<std::uint32_t>(scene.size() < 2000 ? test::stride(100, 1000) : 100);
+  const auto rays = static_cast<std::uint32_t>(scene.size() < 2000 ? test::stride(100, 1000)
+                                                                   : test::cases(std::size_t{100}));
   const std::uint64_t hits = compare_with_brute_force(std::move(scene), rays, 17);
   if (GetParam() == 1 || GetParam() == 9) {
     EXPECT_EQ(hits, 0U);
