@@ -59,10 +59,11 @@ machine::OperationCycles operations_of(const machine::EnergyConfig& energy) {
           .store = of("store", figures.store)};
 }
 
-// One cache, with the keys that say its size and its figures.
+// One cache, with the keys that say its size, its lines and its figures.
 struct NamedCache {
   memory::CacheConfig cache;
   std::string_view size_key;
+  std::string_view line_key;
   std::string_view level;  // "l1" or "l2"
 };
 
@@ -78,7 +79,7 @@ machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const Name
     const std::string level = "energy." + std::string(named.level);
     const bool line = named.cache.line < least_fitted_line || named.cache.line > most_fitted_line;
     throw sim::KeyError(
-        line ? "cache.line" : std::string(named.size_key),
+        std::string(line ? named.line_key : named.size_key),
         "the energy of a cache of " + sim::print_size(static_cast<std::int64_t>(named.cache.size)) +
             " with lines of " + std::to_string(named.cache.line) +
             " bytes is not known: it is fitted to caches of " + sim::print_size(least_fitted_size) + " to " +
@@ -106,14 +107,19 @@ CacheUnits add_cache(const machine::EnergyConfig& energy, const NamedCache& name
 void add_first_level(const machine::MachineConfig& config, EnergyUnits& units) {
   const std::vector<machine::FirstLevelCache> caches = machine::first_level_caches(config.cache);
   for (std::size_t i = 0; i < caches.size(); ++i) {
-    units.l1.at(i) = add_cache(config.energy, {caches[i].cache, caches[i].size_key, "l1"}, units.node_area);
+    units.l1.at(i) =
+        add_cache(config.energy, {caches[i].cache, caches[i].size_key, "cache.line", "l1"}, units.node_area);
   }
 }
 
 void add_second_level(const machine::MachineConfig& config, EnergyUnits& units) {
   if (config.l2.sharing != machine::SecondLevel::none) {
     Wide& area = config.l2.sharing == machine::SecondLevel::shared ? units.cluster_area : units.node_area;
-    units.l2 = add_cache(config.energy, {machine::second_level_cache(config), "l2.size", "l2"}, area);
+    const bool alone = config.cache.organisation == machine::CacheOrganisation::none;
+    units.l2 = add_cache(
+        config.energy,
+        {machine::second_level_cache(config), "l2.size", alone ? "memory.interleave" : "cache.line", "l2"},
+        area);
   }
 }
 

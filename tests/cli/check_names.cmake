@@ -55,5 +55,5 @@ endforeach()
 
 if(faults)
   message("${faults}")
-  message(FATAL_ERROR "names in a wrong place (see above)")
+  message(FATAL_ERROR "names in a wrong place, or properties that cannot fail (see above)")
 endif()

@@ -284,6 +284,10 @@ TEST(FittedCaches, AreRefusedWhereNothingWasFitted) {
   machine.l2.cache.size = std::uint64_t{8} * 1024 * 1024;
   machine.energy.figures.l2 = {};
   EXPECT_TRUE(refusal().starts_with("l2.size: the energy of a cache of 8 MiB"));
+  machine.l2.sharing = SecondLevel::shared;
+  machine.cache.organisation = CacheOrganisation::none;
+  machine.banks.interleave = 128;
+  EXPECT_TRUE(refusal().starts_with("memory.interleave: the energy of a cache of 8 MiB with lines of 128"));
   machine.l2.sharing = SecondLevel::none;
   machine.cache.organisation = CacheOrganisation::split;
   machine.cache.split_sizes[2] = 512;

@@ -36,7 +36,7 @@ namespace {
 
 /// The size at which the tests run a case; in a long run at least that of the study. Leaks are rare, so what
 /// looks for them takes more rays: with the five structures of each case more than a million.
-CaseSize test_size(const std::string& id = {}) {
+CaseSize test_size(const std::string& id) {
   const CaseSize full;
   const std::size_t rays =
       id.starts_with("leaks") ? test::stride(40'000, 210'000) : test::stride(full.rays / 50, full.rays);
@@ -199,7 +199,7 @@ TEST(StabilityOracles, WhatACaseThrowsIsItsFailure) {
   const StabilityCase broken{
       "broken", CaseGroup::machine, "it ends", "it does not",
       [](const CaseSize&) -> CaseOutcome { throw std::runtime_error("no such luck"); }};
-  const CaseOutcome outcome = run_case(broken, test_size());
+  const CaseOutcome outcome = run_case(broken, test_size(broken.id));
   EXPECT_FALSE(outcome.passed());
   EXPECT_NE(outcome.figure.find("no such luck"), std::string::npos);
 }
