@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/mapped.h"
 #include "sim/nearest.h"
 #include "studies/cli/command_tree.h"
 
@@ -47,10 +48,8 @@ Reached reached_by(const CLI::App& app, std::span<const std::string> words) {
 }
 
 std::string no_subcommand(const Reached& reached) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : subcommands_of(*reached.command)) {
-    names.push_back(command->get_name());
-  }
+  const std::vector<std::string> names = sim::mapped(
+      subcommands_of(*reached.command), [&](const CLI::App* command) { return command->get_name(); });
   const std::string there_are = "there are " + listed(names);
   const std::string where = reached.name.empty() ? "" : reached.name + ": ";
   if (reached.rest.empty()) {

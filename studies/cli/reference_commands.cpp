@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
 #include "studies/cli/command_tree.h"
@@ -45,10 +46,8 @@ std::string help_on(const CLI::App& app, std::span<const std::string> words) {
   for (const std::string& word : words) {
     const CLI::App* const found = find_subcommand(*command, word);
     if (found == nullptr) {
-      std::vector<std::string> names;
-      for (const CLI::App* below : subcommands_of(*command)) {
-        names.push_back(below->get_name());
-      }
+      const std::vector<std::string> names =
+          sim::mapped(subcommands_of(*command), [&](const CLI::App* below) { return below->get_name(); });
       throw sim::UserError("help: there is no command \"" + sim::shown(word) + "\"" +
                            sim::did_you_mean(word, names));
     }

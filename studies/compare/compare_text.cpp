@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/mapped.h"
 #include "studies/compare/verdict.h"
 #include "studies/keys/setting_value.h"
 #include "studies/tables/json_table.h"
@@ -52,12 +53,10 @@ std::string time_lines(const ComparedPair& pair) {
 }
 
 Json times_json(const std::vector<ActivityTime>& times) {
-  Json list = Json::array();
-  for (const ActivityTime& time : times) {
-    list.push_back(
-        {{"name", "time_" + time.activity}, {"a", time.a}, {"b", time.b}, {"change_a_node", time.change}});
-  }
-  return list;
+  return sim::mapped(times, [&](const ActivityTime& time) {
+    return Json{
+        {"name", "time_" + time.activity}, {"a", time.a}, {"b", time.b}, {"change_a_node", time.change}};
+  });
 }
 
 }  // namespace
@@ -109,10 +108,10 @@ std::string verdict_lines(const std::vector<std::string>& sentences) {
 }
 
 std::string settings_lines(const std::vector<Difference>& settings) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Difference& setting : settings) {
-    rows.push_back({printable(setting.name), setting_text(setting.a), setting_text(setting.b)});
-  }
+  const std::vector<std::vector<std::string>> rows = sim::mapped(settings, [&](const Difference& setting) {
+    return std::vector<std::string>{printable(setting.name), setting_text(setting.a),
+                                    setting_text(setting.b)};
+  });
   return tables::aligned(rows, {true});
 }
 
@@ -158,21 +157,14 @@ nlohmann::ordered_json json_of(const Difference& figure) {
 }
 
 nlohmann::ordered_json json_of(const std::vector<Difference>& figures) {
-  Json list = Json::array();
-  for (const Difference& figure : figures) {
-    list.push_back(json_of(figure));
-  }
-  return list;
+  return sim::mapped(figures, [&](const Difference& figure) { return json_of(figure); });
 }
 
 nlohmann::ordered_json settings_json(const std::vector<Difference>& settings) {
-  Json list = Json::array();
-  for (const Difference& setting : settings) {
-    list.push_back({{"name", setting.name},
-                    {"a", typed(setting.name, setting.a)},
-                    {"b", typed(setting.name, setting.b)}});
-  }
-  return list;
+  return sim::mapped(settings, [&](const Difference& setting) {
+    return Json{
+        {"name", setting.name}, {"a", typed(setting.name, setting.a)}, {"b", typed(setting.name, setting.b)}};
+  });
 }
 
 std::string differences_json(const ComparedPair& pair, bool all) {

@@ -75,19 +75,19 @@ report::SortedTable figures_table(const std::string& title, const std::vector<Di
 }
 
 report::ReportChart ratio_chart(const std::vector<RatioPoint>& points) {
-  tables::Table table("compare_points", "Frame time of B by that of A, for each point",
-                      {{"point", tables::ColumnType::integer, "1", "its number"},
-                       {"name", tables::ColumnType::text, "", "the values of its axes"},
-                       {"a_ps", tables::ColumnType::integer, "ps", "frame time of A"},
-                       {"b_ps", tables::ColumnType::integer, "ps", "frame time of B"},
-                       {"ratio", tables::ColumnType::real, "1", "frame time of B / frame time of A"},
-                       {"which", tables::ColumnType::text, "", "which is faster"}});
+  tables::Table table(
+      "compare_points", "Frame time of B by that of A, for each point",
+      {tables::count_column("point", "its number"), tables::text_column("name", "the values of its axes"),
+       tables::integer_column("a_ps", "ps", "frame time of A"),
+       tables::integer_column("b_ps", "ps", "frame time of B"),
+       tables::real_column("ratio", "1", "frame time of B / frame time of A"),
+       tables::text_column("which", "which is faster")});
   for (const RatioPoint& point : points) {
     table.add_row({point.point, point.name, point.a, point.b,
                    static_cast<double>(point.b) / static_cast<double>(point.a),
-                   std::string(point.b < point.a   ? "B is faster"
-                               : point.b > point.a ? "B is slower"
-                                                   : "equal")});
+                   point.b < point.a   ? "B is faster"
+                   : point.b > point.a ? "B is slower"
+                                       : "equal"});
   }
   return report::make_chart(table.name(), table, "Below the line B is faster.");
 }

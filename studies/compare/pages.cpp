@@ -47,17 +47,16 @@ void add_machine_part(const std::vector<Difference>& settings, const std::string
 }
 
 report::ReportChart times_chart(const std::vector<ActivityTime>& times, double end) {
-  tables::Table table(
-      "compare_times", "Where the time went",
-      {{"activity", tables::ColumnType::text, "", "see docs/model.md, Accounting"},
-       {"a_ps", tables::ColumnType::integer, "ps", "mean of a node of A"},
-       {"b_ps", tables::ColumnType::integer, "ps", "mean of a node of B"},
-       {"change_ms", tables::ColumnType::real, "ms", "B less A"},
-       {"of_frame", tables::ColumnType::real, "fraction", "the change by the frame time of A"},
-       {"which", tables::ColumnType::text, "", "whether B spends more"}});
+  tables::Table table("compare_times", "Where the time went",
+                      {tables::text_column("activity", "see docs/model.md, Accounting"),
+                       tables::integer_column("a_ps", "ps", "mean of a node of A"),
+                       tables::integer_column("b_ps", "ps", "mean of a node of B"),
+                       tables::real_column("change_ms", "ms", "B less A"),
+                       tables::real_column("of_frame", "fraction", "the change by the frame time of A"),
+                       tables::text_column("which", "whether B spends more")});
   for (const ActivityTime& time : times) {
     table.add_row({time.activity, time.mean_a, time.mean_b, time.change * 1e-9, time.change / end,
-                   std::string(time.change > 0.0 ? "more in B" : "less in B")});
+                   time.change > 0.0 ? "more in B" : "less in B"});
   }
   return report::make_chart(table.name(), table, "The changes add up to that of the frame time.");
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/compare/alike.h"
 #include "studies/compare/compare_text.h"
 #include "studies/compare/frames.h"
@@ -133,10 +134,8 @@ ResultAndSweep result_and_sweep(const ComparedResult& result, const std::filesys
     throw sim::UserError(file.string() +
                          ": no point of this sweep has been run yet; run the sweep again to finish it");
   }
-  std::vector<std::vector<Difference>*> lists;
-  for (ComparedPoint& point : found.points) {
-    lists.push_back(&point.settings);
-  }
+  const std::vector<std::vector<Difference>*> lists =
+      sim::mapped(found.points, [&](ComparedPoint& point) { return &point.settings; });
   SharedDifferences shared = take_alike(lists);
   found.alike = std::move(shared.alike);
   found.varied = std::move(shared.varied);

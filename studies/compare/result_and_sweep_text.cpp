@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/mapped.h"
 #include "studies/compare/compare_text.h"
 #include "studies/compare/result_and_sweep.h"
 #include "studies/compare/verdict.h"
@@ -138,10 +139,8 @@ std::string text_of(const ResultAndSweep& found, bool all) {
 }
 
 std::string json_of(const ResultAndSweep& found) {
-  Json points = Json::array();
-  for (const ComparedPoint& point : found.points) {
-    points.push_back(point_json(found, point));
-  }
+  const Json points =
+      sim::mapped(found.points, [&](const ComparedPoint& point) { return point_json(found, point); });
   return tables::json_text(Json{{"a", {{"name", found.a}}},
                                 {"b", {{"name", found.b}}},
                                 {"sweep", found.sweep_is_a() ? "a" : "b"},

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "sim/mapped.h"
 #include "studies/compare/compare_text.h"
 #include "studies/compare/two_sweeps.h"
 #include "studies/compare/verdict.h"
@@ -188,10 +189,9 @@ std::string json_of(const TwoSweeps& found) {
                       {"ratio", point.same_frame ? Json(point.ratio()) : Json()},
                       {"settings", settings_json(point.settings)}});
   }
-  Json times = Json::array();
-  for (const MeanChange& time : found.times) {
-    times.push_back({{"name", "time_" + time.activity}, {"change_of_frame", time.of_frame}});
-  }
+  const Json times = sim::mapped(found.times, [&](const MeanChange& time) {
+    return Json{{"name", "time_" + time.activity}, {"change_of_frame", time.of_frame}};
+  });
   const std::optional<double> mean = mean_ratio(found);
   return tables::json_text(Json{{"a", {{"name", found.a}, {"version", found.version_a}}},
                                 {"b", {{"name", found.b}, {"version", found.version_b}}},

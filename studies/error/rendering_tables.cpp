@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "sim/mapped.h"
 #include "studies/figures/best_offer.h"
 
 namespace marti::studies::error {
@@ -44,14 +45,12 @@ tables::Table targets_table(const RenderingStudy& study, std::string name, std::
                             const tables::Column& cost, const std::vector<double>& costs) {
   tables::Table table(
       std::move(name), std::move(title),
-      {{"target", tables::ColumnType::real, "fraction", "largest relative error allowed"},
-       {"knob", tables::ColumnType::text, "", "what is turned"},
-       {"setting", tables::ColumnType::text, "",
-        "the cheapest setting that meets the target; none: no value"},
-       {"error", tables::ColumnType::real, "fraction", "its root mean square over that of the reference"},
-       cost,
-       {"gain", tables::ColumnType::real, "1",
-        "times cheaper than the knob's exact setting (samples: than the most)"}});
+      {tables::real_column("target", "fraction", "largest relative error allowed"),
+       tables::text_column("knob", "what is turned"),
+       tables::text_column("setting", "the cheapest setting that meets the target; none: no value"),
+       tables::real_column("error", "fraction", "its root mean square over that of the reference"), cost,
+       tables::real_column("gain", "1",
+                           "times cheaper than the knob's exact setting (samples: than the most)")});
   for (const double target : rendering_targets) {
     for (std::size_t k = 0; k < knobs; ++k) {
       const auto knob = static_cast<Knob>(k);
@@ -60,13 +59,12 @@ tables::Table targets_table(const RenderingStudy& study, std::string name, std::
       }
       const std::optional<std::size_t> best = cheapest(study, knob, target, costs);
       if (!best) {
-        table.add_row(
-            {target, name_of(knob), tables::Cell(), tables::Cell(), tables::Cell(), tables::Cell()});
+        table.add_row({target, name_of(knob), {}, {}, {}, {}});
         continue;
       }
       const RenderingPoint& point = study.points[*best];
       table.add_row({target, name_of(knob), point.setting.name, point.errors.relative,
-                     cost.type == tables::ColumnType::integer ? tables::count_cell(point.steps())
+                     cost.type == tables::ColumnType::integer ? tables::Cell(point.steps())
                                                               : tables::Cell(costs[*best]),
                      costs[dearest_of(study, knob)] / costs[*best]});
     }
@@ -82,19 +80,14 @@ double known_error(const RenderingStudy& study, const RenderingPoint& point) {
 }
 
 std::vector<double> counted_costs(const RenderingStudy& study) {
-  std::vector<double> costs;
-  for (const RenderingPoint& point : study.points) {
-    costs.push_back(static_cast<double>(point.steps()));
-  }
-  return costs;
+  return sim::mapped(study.points,
+                     [&](const RenderingPoint& point) { return static_cast<double>(point.steps()); });
 }
 
 std::vector<double> timed_costs(const RenderingStudy& study) {
-  std::vector<double> costs;
-  for (const RenderingPoint& point : study.points) {
-    costs.push_back(estimate::median_interval(point.cpu_ms).median);
-  }
-  return costs;
+  return sim::mapped(study.points, [&](const RenderingPoint& point) {
+    return estimate::median_interval(point.cpu_ms).median;
+  });
 }
 
 std::vector<std::size_t> front_of(const RenderingStudy& study, Knob knob, const std::vector<double>& costs) {
@@ -102,15 +95,11 @@ std::vector<std::size_t> front_of(const RenderingStudy& study, Knob knob, const 
   // Where pixels are infinite the error is no number, and no point of the front.
   std::erase_if(points,
                 [&](std::size_t point) { return std::isnan(known_error(study, study.points[point])); });
-  std::vector<figures::Offer> pairs;
-  for (const std::size_t point : points) {
-    pairs.push_back({costs[point], known_error(study, study.points[point])});
-  }
-  std::vector<std::size_t> front;
-  for (const std::size_t index : figures::pareto_front(pairs, figures::Better::lower)) {
-    front.push_back(points[index]);
-  }
-  return front;
+  const std::vector<figures::Offer> pairs = sim::mapped(points, [&](const std::size_t point) {
+    return figures::Offer{costs[point], known_error(study, study.points[point])};
+  });
+  return sim::mapped(figures::pareto_front(pairs, figures::Better::lower),
+                     [&](const std::size_t index) { return points[index]; });
 }
 
 std::optional<std::size_t> cheapest(const RenderingStudy& study, Knob knob, double target,
@@ -151,26 +140,24 @@ std::optional<double> sample_exponent(const RenderingStudy& study) {
 tables::Table rendering_error_table(const RenderingStudy& study) {
   tables::Table table(
       "rendering_error", "Settings of the renderer: error and counted work",
-      {{"knob", tables::ColumnType::text, "", "what is turned; exact: what must not change the image"},
-       {"setting", tables::ColumnType::text, "", "to what"},
-       {"value", tables::ColumnType::real, "1", "the same as a number; 0 for exact"},
-       {"rmse", tables::ColumnType::real, "1",
-        "root mean square of the difference from the reference, linear light"},
-       {"relative", tables::ColumnType::real, "1", "the same over the root mean square of the reference"},
-       {"rel_mse", tables::ColumnType::real, "1", "mean of (x - r)^2 / (r^2 + 0.01)"},
-       {"largest", tables::ColumnType::real, "1", "largest difference of a channel"},
-       {"changed", tables::ColumnType::real, "fraction", "pixels that differ in any bit"},
-       {"visible", tables::ColumnType::integer, "1", "pixels with a channel that differs by more than 1/255"},
-       {"median_change", tables::ColumnType::real, "1",
-        "of the pixels that differ, the median of the largest difference, relative"},
-       {"first_column", tables::ColumnType::integer, "1", "of the first pixel that differs, row by row"},
-       {"first_row", tables::ColumnType::integer, "1", "of the same"},
-       {"noise", tables::ColumnType::real, "1",
-        "relative noise of the reference: errors below it are not known"},
-       {"below_noise", tables::ColumnType::integer, "1", "1: the error is not above that noise"},
-       {"rays", tables::ColumnType::integer, "1", "rays traced"},
-       {"visits", tables::ColumnType::integer, "1", "nodes visited"},
-       {"tests", tables::ColumnType::integer, "1", "primitives tested"}});
+      {tables::text_column("knob", "what is turned; exact: what must not change the image"),
+       tables::text_column("setting", "to what"),
+       tables::real_column("value", "1", "the same as a number; 0 for exact"),
+       tables::real_column("rmse", "1",
+                           "root mean square of the difference from the reference, linear light"),
+       tables::real_column("relative", "1", "the same over the root mean square of the reference"),
+       tables::real_column("rel_mse", "1", "mean of (x - r)^2 / (r^2 + 0.01)"),
+       tables::real_column("largest", "1", "largest difference of a channel"),
+       tables::real_column("changed", "fraction", "pixels that differ in any bit"),
+       tables::count_column("visible", "pixels with a channel that differs by more than 1/255"),
+       tables::real_column("median_change", "1",
+                           "of the pixels that differ, the median of the largest difference, relative"),
+       tables::count_column("first_column", "of the first pixel that differs, row by row"),
+       tables::count_column("first_row", "of the same"),
+       tables::real_column("noise", "1", "relative noise of the reference: errors below it are not known"),
+       tables::count_column("below_noise", "1: the error is not above that noise"),
+       tables::count_column("rays", "rays traced"), tables::count_column("visits", "nodes visited"),
+       tables::count_column("tests", "primitives tested")});
   const double noise = study.reference_level > 0.0 ? study.noise_floor / study.reference_level : 0.0;
   for (const RenderingPoint& point : study.points) {
     const RenderingErrors& errors = point.errors;
@@ -179,47 +166,40 @@ tables::Table rendering_error_table(const RenderingStudy& study) {
     const std::uint32_t width = point.setting.render.width;
     table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, errors.plain.rmse,
                    errors.relative, errors.rel_mse, errors.plain.largest,
-                   static_cast<double>(errors.plain.changed) / pixels,
-                   tables::count_cell(errors.plain.visible), errors.median_change,
-                   errors.first ? tables::count_cell(*errors.first % width) : tables::Cell(),
-                   errors.first ? tables::count_cell(*errors.first / width) : tables::Cell(),
-                   point.setting.knob == Knob::samples ? noise : 0.0,
-                   tables::count_cell(point.below_floor ? 1 : 0), tables::count_cell(point.work.all_rays()),
-                   tables::count_cell(point.visits()), tables::count_cell(point.work.tests)});
+                   static_cast<double>(errors.plain.changed) / pixels, errors.plain.visible,
+                   errors.median_change, errors.first ? *errors.first % width : tables::Cell(),
+                   errors.first ? *errors.first / width : tables::Cell(),
+                   point.setting.knob == Knob::samples ? noise : 0.0, point.below_floor,
+                   point.work.all_rays(), point.visits(), point.work.tests});
   }
   return table;
 }
 
 tables::Table rendering_cheapest_table(const RenderingStudy& study) {
   return targets_table(study, "rendering_cheapest", "The least counted work for an error of at most ...",
-                       {"steps", tables::ColumnType::integer, "1", "its rays, visits and tests"},
-                       counted_costs(study));
+                       tables::count_column("steps", "its rays, visits and tests"), counted_costs(study));
 }
 
 tables::Table rendering_fastest_table(const RenderingStudy& study) {
   return targets_table(study, "host_rendering_fastest", "The fastest setting for an error of at most ...",
-                       {"cpu", tables::ColumnType::real, "ms", "its run time, the median"},
-                       timed_costs(study));
+                       tables::real_column("cpu", "ms", "its run time, the median"), timed_costs(study));
 }
 
 tables::Table rendering_time_table(const RenderingStudy& study) {
   tables::Table table(
       "host_rendering_time", "Settings of the renderer: error against run time",
-      {{"knob", tables::ColumnType::text, "", "what is turned; exact: what must not change the image"},
-       {"setting", tables::ColumnType::text, "", "to what"},
-       {"value", tables::ColumnType::real, "1", "the same as a number; 0 for exact"},
-       {"cpu", tables::ColumnType::real, "ms", "processor time of one thread, the median of the repeats"},
-       {"cpu_low", tables::ColumnType::real, "ms", "the shortest"},
-       {"cpu_high", tables::ColumnType::real, "ms", "the longest"},
-       {"confidence", tables::ColumnType::real, "fraction", "with which the true median lies between these"},
-       {"relative", tables::ColumnType::real, "1",
-        "root mean square of the error over that of the reference"},
-       {"drawn", tables::ColumnType::real, "1",
-        "the same for a logarithmic axis: no error at a line below all others"},
-       {"efficiency", tables::ColumnType::real, "1/ms",
-        "1 / (mean square error x run time); none without error"},
-       {"front", tables::ColumnType::integer, "1",
-        "1: no other setting of the knob is both faster and better"}});
+      {tables::text_column("knob", "what is turned; exact: what must not change the image"),
+       tables::text_column("setting", "to what"),
+       tables::real_column("value", "1", "the same as a number; 0 for exact"),
+       tables::real_column("cpu", "ms", "processor time of one thread, the median of the repeats"),
+       tables::real_column("cpu_low", "ms", "the shortest"),
+       tables::real_column("cpu_high", "ms", "the longest"),
+       tables::real_column("confidence", "fraction", "with which the true median lies between these"),
+       tables::real_column("relative", "1", "root mean square of the error over that of the reference"),
+       tables::real_column("drawn", "1",
+                           "the same for a logarithmic axis: no error at a line below all others"),
+       tables::real_column("efficiency", "1/ms", "1 / (mean square error x run time); none without error"),
+       tables::count_column("front", "1: no other setting of the knob is both faster and better")});
   const std::vector<double> costs = timed_costs(study);
   const double line = exact_line(study);
   std::vector<bool> front(study.points.size());
@@ -236,7 +216,7 @@ tables::Table rendering_time_table(const RenderingStudy& study) {
     table.add_row({name_of(point.setting.knob), point.setting.name, point.setting.value, cpu.median, cpu.low,
                    cpu.high, cpu.confidence, point.errors.relative, error > 0.0 ? error : line,
                    square > 0.0 ? tables::Cell(1.0 / (square * cpu.median)) : tables::Cell(),
-                   tables::count_cell(front[i] ? 1 : 0)});
+                   bool{front[i]}});
   }
   return table;
 }

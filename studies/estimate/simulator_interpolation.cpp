@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 
 namespace marti::studies::estimate {
 
@@ -67,17 +68,12 @@ double interpolate(Curve curve, std::span<const double> xs, std::span<const doub
 
 Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<const MachineFigures> machines,
                           double x) {
-  std::vector<double> log_xs;
-  for (const double value : xs) {
-    log_xs.push_back(std::log(value));
-  }
+  const std::vector<double> log_xs = sim::mapped(xs, [&](const double value) { return std::log(value); });
   Estimate estimate;
   for (std::size_t i = 0; i < figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
-    std::vector<double> ys;
-    for (const MachineFigures& machine : machines) {
-      ys.push_back(machine[figure]);
-    }
+    std::vector<double> ys =
+        sim::mapped(machines, [&](const MachineFigures& machine) { return machine[figure]; });
     const auto known = std::find(xs.begin(), xs.end(), x);
     if (known != xs.end()) {
       estimate.value[figure] = ys[static_cast<std::size_t>(known - xs.begin())];

@@ -9,6 +9,7 @@
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "sim/key_error.h"
+#include "sim/mapped.h"
 #include "studies/estimate/packet_schedule.h"
 #include "studies/estimate/tenures.h"
 
@@ -71,11 +72,9 @@ std::vector<sim::Ticks> packet_times(const LatticeWork& work, const RegressionEs
         std::max(0.0, time.counts_for.hit_time * packet.hit_time + time.counts_for.misses * packet.misses));
     sum += times.back();
   }
-  std::vector<sim::Ticks> ticks;
-  for (const double one : times) {
-    ticks.push_back(std::llround(sum > 0.0 ? one * time.total / sum : 0.0));
-  }
-  return ticks;
+  return sim::mapped(times, [&](const double one) {
+    return sim::Ticks{std::llround(sum > 0.0 ? one * time.total / sum : 0.0)};
+  });
 }
 
 // Sets the error of the frame time to that of `part`; `other` adds to the total and has no error.
@@ -144,11 +143,9 @@ double LatticeWork::expected_use(const processors::machine::MachineConfig& machi
 }
 
 double LatticeWork::half_width(const KnownWork& counts_for) const {
-  std::vector<double> values;
-  values.reserve(of_pixels_.size());
-  for (const KnownWork& pixel : of_pixels_) {
-    values.push_back(counts_for.hit_time * pixel.hit_time + counts_for.misses * pixel.misses);
-  }
+  const std::vector<double> values = sim::mapped(of_pixels_, [&](const KnownWork& pixel) {
+    return counts_for.hit_time * pixel.hit_time + counts_for.misses * pixel.misses;
+  });
   return lattice_.half_width(values);
 }
 

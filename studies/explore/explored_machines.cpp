@@ -39,21 +39,16 @@ void ExploredMachines::add(const Settings& settings, const run::RunResult& resul
 
 tables::Table ExploredMachines::table() const {
   std::vector<tables::Column> columns = {
-      {"settings", tables::ColumnType::text, "", "what differs from the configuration"}};
+      tables::text_column("settings", "what differs from the configuration")};
   for (const std::string_view name : shown_figures) {
     const figures::FigureEntry& figure = figures::figure_named(name);
-    columns.push_back({figure.name, tables::ColumnType::real, figure.unit, figure.description});
+    columns.push_back(tables::real_column(figure.name, figure.unit, figure.description));
   }
   tables::Table table("explored", "All machines that were simulated", std::move(columns));
   const std::lock_guard lock(mutex_);
   for (const Machine& machine : machines_) {
     std::vector<tables::Cell> row = {machine.name};
-    for (const std::optional<double>& value : machine.figures) {
-      tables::Cell& cell = row.emplace_back();
-      if (value) {
-        cell = *value;
-      }
-    }
+    row.insert(row.end(), machine.figures.begin(), machine.figures.end());
     table.add_row(std::move(row));
   }
   return table;

@@ -9,6 +9,7 @@
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "processors/theory/closed_network.h"
+#include "sim/mapped.h"
 #include "sim/mix.h"
 #include "studies/estimate/packet_schedule.h"
 #include "studies/estimate/within.h"
@@ -55,10 +56,8 @@ std::vector<std::uint64_t> spread(std::uint64_t packets) {
 // words.
 double handed_out(const MachineConfig& machine, const std::vector<double>& words, double work) {
   const double all = std::accumulate(words.begin(), words.end(), 0.0);
-  std::vector<sim::Ticks> times;
-  for (const double each : words) {
-    times.push_back(std::llround(work * each / all));
-  }
+  const std::vector<sim::Ticks> times =
+      sim::mapped(words, [&](const double each) { return sim::Ticks{std::llround(work * each / all)}; });
   // More nodes than packets would have nothing to do.
   const auto nodes = static_cast<std::uint32_t>(std::min<std::size_t>(machine.nodes, words.size()));
   return static_cast<double>(estimate::schedule_packets(machine.host, nodes, times));

@@ -59,26 +59,24 @@ TreeChange change_of(const FrameTree& tree) {
 tables::Table frame_table(std::span<const FrameOutcome> frames) {
   tables::Table table(
       "frames", "Frames: what moved, and what an update of the tree alters",
-      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
-       {"time", tables::ColumnType::real, "s", "from the animation's beginning"},
-       {"moved", tables::ColumnType::integer, "1", "primitives that moved since the frame before"},
-       {"nodes", tables::ColumnType::integer, "1", "nodes of the whole tree"},
-       {"branches", tables::ColumnType::integer, "1", "of these, branches"},
-       {"altered", tables::ColumnType::integer, "1", "nodes whose record or list must be made anew"},
-       {"kept", tables::ColumnType::real, "fraction", "nodes that stay as they were"},
-       {"resorted", tables::ColumnType::integer, "1", "branches that sort moved primitives only"},
-       {"split", tables::ColumnType::integer, "1", "branches whose children are made anew"},
-       {"sorted", tables::ColumnType::real, "fraction",
-        "primitives that the update sorts, once a node, against a build from nothing"},
-       {"tests", tables::ColumnType::real, "fraction", "overlap tests that it runs, against such a build"},
-       {"hit_hash", tables::ColumnType::text, "", "hash of every ray's outcome"},
-       {"image_hash", tables::ColumnType::text, "", "hash of the pixels' bits"}});
+      {tables::count_column("frame", "number of the frame"),
+       tables::real_column("time", "s", "from the animation's beginning"),
+       tables::count_column("moved", "primitives that moved since the frame before"),
+       tables::count_column("nodes", "nodes of the whole tree"),
+       tables::count_column("branches", "of these, branches"),
+       tables::count_column("altered", "nodes whose record or list must be made anew"),
+       tables::real_column("kept", "fraction", "nodes that stay as they were"),
+       tables::count_column("resorted", "branches that sort moved primitives only"),
+       tables::count_column("split", "branches whose children are made anew"),
+       tables::real_column("sorted", "fraction",
+                           "primitives that the update sorts, once a node, against a build from nothing"),
+       tables::real_column("tests", "fraction", "overlap tests that it runs, against such a build"),
+       tables::text_column("hit_hash", "hash of every ray's outcome"),
+       tables::text_column("image_hash", "hash of the pixels' bits")});
   for (const FrameOutcome& frame : frames) {
     const TreeChange& change = frame.change;
-    table.add_row({tables::count_cell(frame.number), frame.seconds, tables::count_cell(change.moved),
-                   tables::count_cell(change.nodes), tables::count_cell(change.branches),
-                   tables::count_cell(change.altered), share(change.nodes - change.altered, change.nodes),
-                   tables::count_cell(change.resorted), tables::count_cell(change.split),
+    table.add_row({frame.number, frame.seconds, change.moved, change.nodes, change.branches, change.altered,
+                   share(change.nodes - change.altered, change.nodes), change.resorted, change.split,
                    share(change.sorted, change.all_sorted), share(change.tests, change.all_tests),
                    hash_text(frame.hit_hash), hash_text(frame.image_hash)});
   }
@@ -88,27 +86,26 @@ tables::Table frame_table(std::span<const FrameOutcome> frames) {
 tables::Table cycle_table(std::span<const FrameOutcome> frames) {
   tables::Table table(
       "cycles", "The cycle \"build, render\" of each frame",
-      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
-       {"way", tables::ColumnType::text, "", "how the machine comes by the frame's tree"},
-       {"build", tables::ColumnType::integer, "ps", "time for building before the frame"},
-       {"render", tables::ColumnType::integer, "ps", "time of the frame, building on demand included"},
-       {"cycle", tables::ColumnType::integer, "ps", "both"},
-       {"building", tables::ColumnType::integer, "ps",
-        "compute time for building before the frame and in it, all nodes together"},
-       {"start_up_splits", tables::ColumnType::integer, "1", "branches split before the frame"},
-       {"splits", tables::ColumnType::integer, "1", "branches split before the frame and in it"},
-       {"branches", tables::ColumnType::integer, "1", "branches at the end of the frame"},
-       {"partial", tables::ColumnType::integer, "1", "partially built nodes at the end of the frame"},
-       {"memory", tables::ColumnType::integer, "byte", "records and lists at the end of the frame"},
-       {"cycle_saved", tables::ColumnType::real, "fraction", "of the cycle with the whole tree rebuilt"}});
+      {tables::count_column("frame", "number of the frame"),
+       tables::text_column("way", "how the machine comes by the frame's tree"),
+       tables::integer_column("build", "ps", "time for building before the frame"),
+       tables::integer_column("render", "ps", "time of the frame, building on demand included"),
+       tables::integer_column("cycle", "ps", "both"),
+       tables::integer_column("building", "ps",
+                              "compute time for building before the frame and in it, all nodes together"),
+       tables::count_column("start_up_splits", "branches split before the frame"),
+       tables::count_column("splits", "branches split before the frame and in it"),
+       tables::count_column("branches", "branches at the end of the frame"),
+       tables::count_column("partial", "partially built nodes at the end of the frame"),
+       tables::integer_column("memory", "byte", "records and lists at the end of the frame"),
+       tables::real_column("cycle_saved", "fraction", "of the cycle with the whole tree rebuilt")});
   for (const FrameOutcome& frame : frames) {
     const sim::Ticks rebuild = cycle_of(frame, FrameWay::rebuild_all);
     for (std::size_t way = 0; way < frame_ways; ++way) {
       const WayOutcome& outcome = frame.ways[way];
-      table.add_row({tables::count_cell(frame.number), std::string(frame_way_names[way]), outcome.build,
-                     outcome.render, outcome.cycle(), outcome.building, outcome.start_up_splits,
-                     outcome.all_splits(), outcome.branches, outcome.partial, outcome.bytes,
-                     saved(outcome.cycle(), rebuild)});
+      table.add_row({frame.number, frame_way_names[way], outcome.build, outcome.render, outcome.cycle(),
+                     outcome.building, outcome.start_up_splits, outcome.all_splits(), outcome.branches,
+                     outcome.partial, outcome.bytes, saved(outcome.cycle(), rebuild)});
     }
   }
   return table;
@@ -117,16 +114,16 @@ tables::Table cycle_table(std::span<const FrameOutcome> frames) {
 tables::Table total_table(std::span<const FrameOutcome> frames) {
   tables::Table table(
       "totals", "All frames together",
-      {{"way", tables::ColumnType::text, "", "how the machine comes by a frame's tree"},
-       {"build", tables::ColumnType::integer, "ps", "time for building before frames"},
-       {"render", tables::ColumnType::integer, "ps", "time of frames, building on demand included"},
-       {"cycle", tables::ColumnType::integer, "ps", "both"},
-       {"building", tables::ColumnType::integer, "ps", "compute time for building, all nodes together"},
-       {"splits", tables::ColumnType::integer, "1", "branches split"},
-       {"largest", tables::ColumnType::integer, "byte", "records and lists, of the frame with most"},
-       {"cycle_saved", tables::ColumnType::real, "fraction", "of the cycles with the whole tree rebuilt"},
-       {"later_saved", tables::ColumnType::real, "fraction",
-        "the same without the first frame, before which there is no tree"}});
+      {tables::text_column("way", "how the machine comes by a frame's tree"),
+       tables::integer_column("build", "ps", "time for building before frames"),
+       tables::integer_column("render", "ps", "time of frames, building on demand included"),
+       tables::integer_column("cycle", "ps", "both"),
+       tables::integer_column("building", "ps", "compute time for building, all nodes together"),
+       tables::count_column("splits", "branches split"),
+       tables::integer_column("largest", "byte", "records and lists, of the frame with most"),
+       tables::real_column("cycle_saved", "fraction", "of the cycles with the whole tree rebuilt"),
+       tables::real_column("later_saved", "fraction",
+                           "the same without the first frame, before which there is no tree")});
   for (std::size_t way = 0; way < frame_ways; ++way) {
     WayOutcome sum;
     sim::Ticks rebuild = 0;
@@ -145,8 +142,8 @@ tables::Table total_table(std::span<const FrameOutcome> frames) {
       const FrameOutcome& first = frames.front();
       later = saved(sum.cycle() - first.ways[way].cycle(), rebuild - cycle_of(first, FrameWay::rebuild_all));
     }
-    table.add_row({std::string(frame_way_names[way]), sum.build, sum.render, sum.cycle(), sum.building,
-                   splits, sum.bytes, saved(sum.cycle(), rebuild), later});
+    table.add_row({frame_way_names[way], sum.build, sum.render, sum.cycle(), sum.building, splits, sum.bytes,
+                   saved(sum.cycle(), rebuild), later});
   }
   return table;
 }
@@ -154,13 +151,13 @@ tables::Table total_table(std::span<const FrameOutcome> frames) {
 tables::Table host_frame_table(std::span<const FrameOutcome> frames) {
   tables::Table table(
       "host_frames", "The trees on the host",
-      {{"frame", tables::ColumnType::integer, "1", "number of the frame"},
-       {"build", tables::ColumnType::real, "s", "the tree from nothing, on all host threads"},
-       {"update", tables::ColumnType::real, "s", "the tree from the one before, on one host thread"}});
+      {tables::count_column("frame", "number of the frame"),
+       tables::real_column("build", "s", "the tree from nothing, on all host threads"),
+       tables::real_column("update", "s", "the tree from the one before, on one host thread")});
   for (const FrameOutcome& frame : frames) {
     const bool first = &frame == frames.data();
-    table.add_row({tables::count_cell(frame.number), frame.build_seconds,
-                   first ? tables::Cell() : tables::Cell(frame.update_seconds)});
+    table.add_row(
+        {frame.number, frame.build_seconds, first ? tables::Cell() : tables::Cell(frame.update_seconds)});
   }
   return table;
 }

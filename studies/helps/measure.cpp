@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "sim/mapped.h"
 #include "studies/figures/counted_figures.h"
 #include "studies/helps/least_time.h"
 #include "studies/helps/resources.h"
@@ -191,10 +192,7 @@ class Measurement {
   // What a step must be able to save to be worth a replay. With prices any that is worth naming may be the
   // advice, because a smaller gain may be the cheaper one.
   [[nodiscard]] double least_wanted() const {
-    std::vector<double> saved;
-    for (const Case& one : cases_) {
-      saved.push_back(saved_by(one.help.step));
-    }
+    std::vector<double> saved = sim::mapped(cases_, [&](const Case& one) { return saved_by(one.help.step); });
     if (prices_ || saved.size() < most_named) {
       return worth_naming;
     }

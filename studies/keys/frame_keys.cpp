@@ -1,5 +1,6 @@
 #include "studies/keys/frame_keys.h"
 
+#include "sim/mapped.h"
 #include "sim/shown.h"
 
 #include <algorithm>
@@ -117,10 +118,8 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.boolean("image.voxel_cut_reference", false,
                  "with the voxel cut: render the exact image too and report the difference");
   schema.section("structure", "the space subdivision");
-  std::vector<std::string> kinds;
-  for (const std::string_view kind : accel::structure_kinds()) {
-    kinds.emplace_back(kind);
-  }
+  const std::vector<std::string> kinds =
+      sim::mapped(accel::structure_kinds(), [&](const std::string_view kind) { return std::string(kind); });
   schema.choice("structure.kind", "octree", kinds,
                 "octree; bsp, a binary tree with the octree's planes; grid of equal cells; bvh, boxes around "
                 "primitives within boxes (docs/bvh.md); or none: every ray tests every primitive");

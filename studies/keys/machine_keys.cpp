@@ -13,6 +13,7 @@
 #include "processors/energy/energy.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/keys/build_keys.h"
 #include "studies/keys/cache_detail_keys.h"
 #include "studies/keys/combination_keys.h"
@@ -72,10 +73,8 @@ void declare_node(Schema& schema) {
                  "posted pixel writes a node may have outstanding before it stalls");
   declare_context_keys(schema);
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
-  std::vector<std::string> presets;
-  for (const std::string_view preset : processors::cost::cost_presets()) {
-    presets.emplace_back(preset);
-  }
+  const std::vector<std::string> presets = sim::mapped(
+      processors::cost::cost_presets(), [&](const std::string_view preset) { return std::string(preset); });
   schema.choice("costs.preset", presets.back(), presets, "the processor whose operation timings are taken");
   for (const auto& [name, member] : operations) {
     schema.integer(name, -1, {-1, 1'000'000}, "cycles", "cycles of one such operation; -1: the preset's");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/config_errors.h"
+#include "sim/mapped.h"
 #include "sim/nearest.h"
 
 namespace marti::studies::keys {
@@ -46,10 +47,8 @@ void declare_price_keys(sim::Schema& schema) {
 
 Prices read_prices(const sim::Config& config) {
   if (const sim::DocumentValue::Table& unknown = config.free_section("prices"); !unknown.empty()) {
-    std::vector<std::string> names;
-    for (const PriceKey& key : price_keys) {
-      names.emplace_back(key.name);
-    }
+    const std::vector<std::string> names =
+        sim::mapped(price_keys, [&](const PriceKey& key) { return std::string(key.name); });
     const std::string name = "prices." + unknown.front().name;
     sim::fail_at(config, unknown.front().line, name,
                  "unknown key" + sim::did_you_mean(name, names) + "; `marti config` lists all keys");

@@ -40,10 +40,10 @@ LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optiona
   const StoredLimits limits(sweep, prices);
   const std::size_t ordinal = table.column("ordinal");
   const std::array<tables::Column, 4> columns = {
-      {{"limit", tables::ColumnType::text, "", "the key that a tenth better helps most (docs/sweep.md)"},
-       {"limit_saves", tables::ColumnType::real, "fraction", "of the frame time that this saves, predicted"},
-       {"limit_rests_on", tables::ColumnType::text, "", "what the prediction rests on"},
-       {"limit_open", tables::ColumnType::text, "", "keys of which nothing is known that may save more"}}};
+      {tables::text_column("limit", "the key that a tenth better helps most (docs/sweep.md)"),
+       tables::real_column("limit_saves", "fraction", "of the frame time that this saves, predicted"),
+       tables::text_column("limit_rests_on", "what the prediction rests on"),
+       tables::text_column("limit_open", "keys of which nothing is known that may save more")}};
   std::map<std::string, std::size_t> count;
   std::size_t open = 0;
   table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {

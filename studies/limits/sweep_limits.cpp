@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/mapped.h"
 #include "studies/helps/resources.h"
 #include "studies/helps/verdict.h"
 #include "studies/keys/machine_keys.h"
@@ -75,11 +76,7 @@ SweepLimits::SweepLimits(std::vector<std::string> axes, std::vector<LimitPoint> 
 }
 
 std::vector<const sim::Config*> SweepLimits::configs_of(const std::vector<LimitPoint>& points) {
-  std::vector<const sim::Config*> configs;
-  for (const LimitPoint& point : points) {
-    configs.push_back(&point.config);
-  }
-  return configs;
+  return sim::mapped(points, [](const LimitPoint& point) { return &point.config; });
 }
 
 PointLimit SweepLimits::at(std::size_t point) const {

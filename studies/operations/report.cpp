@@ -159,31 +159,27 @@ std::string text_of(const OperationsStudy& study) {
 
 void add_operation_columns(std::vector<tables::Column>& columns, std::string_view of_what) {
   for (const std::string_view name : operation_names) {
-    columns.push_back({std::string(name), tables::ColumnType::real, "1",
-                       std::string(name == "integer" ? "integer and logic operations" : name) + ", " +
-                           std::string(of_what)});
+    columns.push_back(
+        tables::real_column(name, "1",
+                            std::string(name == "integer" ? "integer and logic operations" : name) + ", " +
+                                std::string(of_what)));
   }
 }
 
 tables::Table step_table(const OperationsStudy& study) {
   std::vector<tables::Column> columns = {
-      {"walk", tables::ColumnType::text, "", "structure and walk"},
-      {"mailboxes", tables::ColumnType::integer, "1", "1 with mailboxes, else 0"},
-      {"nodes", tables::ColumnType::integer, "1", "nodes of the structure"},
-      {"entries", tables::ColumnType::integer, "1", "primitives listed in its leaves"},
-      {"step", tables::ColumnType::text, "",
-       "kind of step; walk: all branches and leaves of a ray; all: the whole ray"},
-      {"steps_per_ray", tables::ColumnType::real, "1", "steps of the kind that a ray takes, on average"}};
+      tables::text_column("walk", "structure and walk"),
+      tables::count_column("mailboxes", "1 with mailboxes, else 0"),
+      tables::count_column("nodes", "nodes of the structure"),
+      tables::count_column("entries", "primitives listed in its leaves"),
+      tables::text_column("step", "kind of step; walk: all branches and leaves of a ray; all: the whole ray"),
+      tables::real_column("steps_per_ray", "1", "steps of the kind that a ray takes, on average")};
   add_operation_columns(columns, "on average, of one step");
   tables::Table table("operations", "Operations of each walk", std::move(columns));
   for (const WalkRow& row : study.walks) {
     for (const StepRow& step : steps_of(row)) {
-      std::vector<tables::Cell> cells = {row.name,
-                                         tables::count_cell(row.mailboxes ? 1 : 0),
-                                         tables::count_cell(row.nodes),
-                                         tables::count_cell(row.entries),
-                                         std::string(step.name),
-                                         step.per_ray};
+      std::vector<tables::Cell> cells = {row.name,    row.mailboxes, row.nodes,
+                                         row.entries, step.name,     step.per_ray};
       cells.insert(cells.end(), step.operations.begin(), step.operations.end());
       table.add_row(std::move(cells));
     }
@@ -193,24 +189,23 @@ tables::Table step_table(const OperationsStudy& study) {
 
 tables::Table length_table(const OperationsStudy& study) {
   std::vector<tables::Column> columns = {
-      {"depth", tables::ColumnType::integer, "1", "levels of the octree"},
-      {"width", tables::ColumnType::integer, "1", "finest cells along an axis"},
-      {"structure", tables::ColumnType::text, "", "what the rays walk through"},
-      {"predicted_nodes", tables::ColumnType::real, "1",
-       "nodes per unit length by the argument; none for a surface"},
-      {"nodes", tables::ColumnType::real, "1", "nodes visited per unit length, the width of the finest cell"},
-      {"branches", tables::ColumnType::real, "1", "of these, branches"},
-      {"leaves", tables::ColumnType::real, "1", "of these, leaves"}};
+      tables::count_column("depth", "levels of the octree"),
+      tables::count_column("width", "finest cells along an axis"),
+      tables::text_column("structure", "what the rays walk through"),
+      tables::real_column("predicted_nodes", "1",
+                          "nodes per unit length by the argument; none for a surface"),
+      tables::real_column("nodes", "1", "nodes visited per unit length, the width of the finest cell"),
+      tables::real_column("branches", "1", "of these, branches"),
+      tables::real_column("leaves", "1", "of these, leaves")};
   add_operation_columns(columns, "of the walk per unit length");
   tables::Table table("unit_length", "Operations per unit length of a ray", std::move(columns));
   for (const UnitLengthRow& row : study.lengths) {
     const auto unit = [&](std::uint64_t count) { return static_cast<double>(count) / row.length; };
     const auto line = [&](const char* name, const tables::Cell& predicted, std::uint64_t branches,
                           std::uint64_t leaves, const accel::OperationCounts& c) {
-      table.add_row({tables::count_cell(row.depth), tables::count_cell(row.width), std::string(name),
-                     predicted, unit(branches + leaves), unit(branches), unit(leaves), unit(c.add),
-                     unit(c.multiply), unit(c.divide), unit(c.square_root), unit(c.compare),
-                     unit(c.integer)});
+      table.add_row({row.depth, row.width, name, predicted, unit(branches + leaves), unit(branches),
+                     unit(leaves), unit(c.add), unit(c.multiply), unit(c.divide), unit(c.square_root),
+                     unit(c.compare), unit(c.integer)});
     };
     line("grid", 1.5, 0, row.cells, row.grid);
     line("full octree", predicted_full(row), row.full_branches, row.full_leaves, row.full);

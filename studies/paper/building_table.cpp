@@ -67,27 +67,25 @@ tables::Table building_table(std::size_t index, const RunOutcomes& outcomes) {
       fmt::format("table{}", index + 2),
       fmt::format("Table {}: {}, the octree built to an initial level before the frame", index + 2,
                   name_of(outcomes.run)),
-      {{"level", tables::ColumnType::integer, "1",
-        "initial level: its nodes are not divided before the frame"},
-       {"note", tables::ColumnType::text, "", "rules that choose the level"},
-       {"build", tables::ColumnType::integer, "ps", "time until the initial tree is there"},
-       {"render", tables::ColumnType::integer, "ps", "time from then on, building on demand included"},
-       {"total", tables::ColumnType::integer, "ps", "both"},
-       {"building", tables::ColumnType::integer, "ps",
-        "compute time for building before the frame and in it, all nodes together"},
-       {"splits", tables::ColumnType::integer, "1", "nodes divided before the frame and in it"},
-       {"nodes", tables::ColumnType::integer, "1", "nodes that the frame leaves"},
-       {"partial", tables::ColumnType::integer, "1", "of these, nodes left partially built"},
-       {"memory", tables::ColumnType::integer, "byte", "records and lists that the frame leaves"},
-       {"memory_saved", tables::ColumnType::real, "fraction", "memory saved against the whole tree"},
-       {"building_saved", tables::ColumnType::real, "fraction", "compute time for building saved against it"},
-       {"total_change", tables::ColumnType::real, "fraction", "total time against it"}});
+      {tables::count_column("level", "initial level: its nodes are not divided before the frame"),
+       tables::text_column("note", "rules that choose the level"),
+       tables::integer_column("build", "ps", "time until the initial tree is there"),
+       tables::integer_column("render", "ps", "time from then on, building on demand included"),
+       tables::integer_column("total", "ps", "both"),
+       tables::integer_column("building", "ps",
+                              "compute time for building before the frame and in it, all nodes together"),
+       tables::count_column("splits", "nodes divided before the frame and in it"),
+       tables::count_column("nodes", "nodes that the frame leaves"),
+       tables::count_column("partial", "of these, nodes left partially built"),
+       tables::integer_column("memory", "byte", "records and lists that the frame leaves"),
+       tables::real_column("memory_saved", "fraction", "memory saved against the whole tree"),
+       tables::real_column("building_saved", "fraction", "compute time for building saved against it"),
+       tables::real_column("total_change", "fraction", "total time against it")});
   const LevelOutcome& whole = outcomes.whole();
   for (const LevelOutcome& outcome : outcomes.levels) {
-    table.add_row({tables::count_cell(outcome.initial.level), outcome.initial.note(), outcome.build,
-                   outcome.render, outcome.total(), outcome.building(), tables::count_cell(outcome.splits),
-                   tables::count_cell(outcome.nodes), tables::count_cell(outcome.partial),
-                   tables::count_cell(outcome.bytes), saved(outcome.bytes, whole.bytes),
+    table.add_row({outcome.initial.level, outcome.initial.note(), outcome.build, outcome.render,
+                   outcome.total(), outcome.building(), outcome.splits, outcome.nodes, outcome.partial,
+                   outcome.bytes, saved(outcome.bytes, whole.bytes),
                    saved(ticks(outcome.building()), ticks(whole.building())),
                    change(outcome.total(), whole.total())});
   }
@@ -97,17 +95,17 @@ tables::Table building_table(std::size_t index, const RunOutcomes& outcomes) {
 tables::Table initial_level_table(std::span<const RunOutcomes> runs) {
   tables::Table table(
       "initial_levels", "Initial level against time and memory",
-      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
-       {"level", tables::ColumnType::integer, "1", "initial level"},
-       {"build", tables::ColumnType::integer, "ps", "time until the initial tree is there"},
-       {"total_change", tables::ColumnType::real, "fraction", "total time against that with the whole tree"},
-       {"memory_share", tables::ColumnType::real, "fraction", "memory as a share of the whole tree's"},
-       {"building_share", tables::ColumnType::real, "fraction",
-        "compute time for building, before the frame and in it, as a share of the whole tree's"}});
+      {tables::text_column("run", "scene and depth of rays"), tables::count_column("level", "initial level"),
+       tables::integer_column("build", "ps", "time until the initial tree is there"),
+       tables::real_column("total_change", "fraction", "total time against that with the whole tree"),
+       tables::real_column("memory_share", "fraction", "memory as a share of the whole tree's"),
+       tables::real_column(
+           "building_share", "fraction",
+           "compute time for building, before the frame and in it, as a share of the whole tree's")});
   for (const RunOutcomes& run : runs) {
     const LevelOutcome& whole = run.whole();
     for (const LevelOutcome& outcome : run.levels) {
-      table.add_row({name_of(run.run), tables::count_cell(outcome.initial.level), outcome.build,
+      table.add_row({name_of(run.run), outcome.initial.level, outcome.build,
                      change(outcome.total(), whole.total()), 1.0 - saved(outcome.bytes, whole.bytes),
                      1.0 - saved(ticks(outcome.building()), ticks(whole.building()))});
     }
@@ -116,22 +114,21 @@ tables::Table initial_level_table(std::span<const RunOutcomes> runs) {
 }
 
 tables::Table savings_table(std::span<const RunOutcomes> runs, std::span<const double> rules) {
-  tables::Table table("savings", "What the rules save against building the whole tree before the frame",
-                      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
-                       {"k", tables::ColumnType::real, "", "the rule's factor"},
-                       {"level", tables::ColumnType::integer, "1", "the initial level it chooses"},
-                       {"memory_saved", tables::ColumnType::real, "fraction", "memory"},
-                       {"building_saved", tables::ColumnType::real, "fraction", "compute time for building"},
-                       {"render_change", tables::ColumnType::real, "fraction",
-                        "time of the frame, building on demand included"},
-                       {"total_change", tables::ColumnType::real, "fraction", "time of building and frame"}});
+  tables::Table table(
+      "savings", "What the rules save against building the whole tree before the frame",
+      {tables::text_column("run", "scene and depth of rays"),
+       tables::real_column("k", "", "the rule's factor"),
+       tables::count_column("level", "the initial level it chooses"),
+       tables::real_column("memory_saved", "fraction", "memory"),
+       tables::real_column("building_saved", "fraction", "compute time for building"),
+       tables::real_column("render_change", "fraction", "time of the frame, building on demand included"),
+       tables::real_column("total_change", "fraction", "time of building and frame")});
   for (const RunOutcomes& run : runs) {
     const LevelOutcome& whole = run.whole();
     for (const double k : rules) {
       const LevelOutcome* outcome = run.by_rule(k);
       sim::ensure(outcome != nullptr, "a rule was not tried");
-      table.add_row({name_of(run.run), k, tables::count_cell(outcome->initial.level),
-                     saved(outcome->bytes, whole.bytes),
+      table.add_row({name_of(run.run), k, outcome->initial.level, saved(outcome->bytes, whole.bytes),
                      saved(ticks(outcome->building()), ticks(whole.building())),
                      change(outcome->render, whole.render), change(outcome->total(), whole.total())});
     }

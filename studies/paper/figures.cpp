@@ -55,20 +55,19 @@ TaskTimes tasks_of(const processors::cost::TimeDivision& time) {
 
 tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times) {
   sim::ensure(runs.size() == times.size(), "figure 1 needs the times of every run");
-  tables::Table table(
-      "figure1", "Figure 1: time by task, the whole tree being built before the frame",
-      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
-       {"task", tables::ColumnType::text, "", "what the time goes to"},
-       {"rank", tables::ColumnType::integer, "1", "order of the tasks"},
-       {"time", tables::ColumnType::integer, "ps", "time of all nodes together"},
-       {"share", tables::ColumnType::real, "fraction", "share of the time of all nodes together"}});
+  tables::Table table("figure1", "Figure 1: time by task, the whole tree being built before the frame",
+                      {tables::text_column("run", "scene and depth of rays"),
+                       tables::text_column("task", "what the time goes to"),
+                       tables::count_column("rank", "order of the tasks"),
+                       tables::integer_column("time", "ps", "time of all nodes together"),
+                       tables::real_column("share", "fraction", "share of the time of all nodes together")});
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto all =
         static_cast<std::uint64_t>(std::accumulate(times[i].begin(), times[i].end(), sim::Ticks{0}));
     for (std::size_t task = 0; task < tasks; ++task) {
       const sim::Ticks time = times[i][task];
-      table.add_row({name_of(runs[i].run), std::string(task_names[task]), tables::count_cell(task), time,
-                     share(static_cast<std::uint64_t>(time), all)});
+      table.add_row(
+          {name_of(runs[i].run), task_names[task], task, time, share(static_cast<std::uint64_t>(time), all)});
     }
   }
   return table;
@@ -77,16 +76,14 @@ tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTi
 tables::Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout) {
   tables::Table table(
       "figure2", "Figure 2: memory by level",
-      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
-       {"tree", tables::ColumnType::text, "",
-        "whole: built before the frame; on demand: only what the frame's rays needed"},
-       {"level", tables::ColumnType::integer, "1", "level, the root's being 1"},
-       {"branches", tables::ColumnType::integer, "1", "B"},
-       {"leaves", tables::ColumnType::integer, "1", "L"},
-       {"partial", tables::ColumnType::integer, "1", "P: nodes left undivided"},
-       {"entries", tables::ColumnType::integer, "1", "triangles in the lists of leaves and partial nodes"},
-       {"bytes", tables::ColumnType::integer, "byte", "records and lists of the level"},
-       {"share", tables::ColumnType::real, "fraction", "share of the whole tree's bytes"}});
+      {tables::text_column("run", "scene and depth of rays"),
+       tables::text_column("tree",
+                           "whole: built before the frame; on demand: only what the frame's rays needed"),
+       tables::count_column("level", "level, the root's being 1"), tables::count_column("branches", "B"),
+       tables::count_column("leaves", "L"), tables::count_column("partial", "P: nodes left undivided"),
+       tables::count_column("entries", "triangles in the lists of leaves and partial nodes"),
+       tables::integer_column("bytes", "byte", "records and lists of the level"),
+       tables::real_column("share", "fraction", "share of the whole tree's bytes")});
   for (const TracedRun& run : runs) {
     const std::uint64_t whole = bytes_of(run.levels, layout);
     const std::vector<LevelCount> lazy = count_lazy_levels(run.log->topology, run.visits.touched, 1);
@@ -94,11 +91,9 @@ tables::Table memory_table(std::span<const TracedRun> runs, const memory::Layout
       const std::vector<LevelCount>& levels = on_demand ? lazy : run.levels;
       for (std::size_t i = 0; i < levels.size(); ++i) {
         const std::uint64_t bytes = bytes_of(levels[i], layout);
-        table.add_row({name_of(run.run), on_demand ? "on demand" : "whole", tables::count_cell(i + 1),
-                       tables::count_cell(levels[i].branches), tables::count_cell(levels[i].leaves),
-                       tables::count_cell(levels[i].partial),
-                       tables::count_cell(levels[i].leaf_entries + levels[i].partial_entries),
-                       tables::count_cell(bytes), share(bytes, whole)});
+        table.add_row({name_of(run.run), on_demand ? "on demand" : "whole", i + 1, levels[i].branches,
+                       levels[i].leaves, levels[i].partial,
+                       levels[i].leaf_entries + levels[i].partial_entries, bytes, share(bytes, whole)});
       }
     }
   }
@@ -106,24 +101,22 @@ tables::Table memory_table(std::span<const TracedRun> runs, const memory::Layout
 }
 
 tables::Table access_table(std::span<const TracedRun> runs) {
-  tables::Table table(
-      "figure3", "Figure 3: accesses by level",
-      {{"run", tables::ColumnType::text, "", "scene and depth of rays"},
-       {"level", tables::ColumnType::integer, "1", "level, the root's being 1"},
-       {"accesses", tables::ColumnType::integer, "1", "visits of nodes of the level, by all rays"},
-       {"share", tables::ColumnType::real, "fraction", "share of all visits"},
-       {"tests", tables::ColumnType::integer, "1", "triangles tested in the level's leaves"},
-       {"nodes", tables::ColumnType::integer, "1", "nodes of the level in the whole tree"},
-       {"untouched", tables::ColumnType::integer, "1", "of these, nodes that no ray visited"}});
+  tables::Table table("figure3", "Figure 3: accesses by level",
+                      {tables::text_column("run", "scene and depth of rays"),
+                       tables::count_column("level", "level, the root's being 1"),
+                       tables::count_column("accesses", "visits of nodes of the level, by all rays"),
+                       tables::real_column("share", "fraction", "share of all visits"),
+                       tables::count_column("tests", "triangles tested in the level's leaves"),
+                       tables::count_column("nodes", "nodes of the level in the whole tree"),
+                       tables::count_column("untouched", "of these, nodes that no ray visited")});
   for (const TracedRun& run : runs) {
     const NodeVisits& visits = run.visits;
     const std::uint64_t all =
         std::accumulate(visits.per_level.begin(), visits.per_level.end(), std::uint64_t{0});
     for (std::size_t i = 0; i < visits.per_level.size(); ++i) {
       const std::uint64_t nodes = run.levels[i].nodes();
-      table.add_row({name_of(run.run), tables::count_cell(i + 1), tables::count_cell(visits.per_level[i]),
-                     share(visits.per_level[i], all), tables::count_cell(visits.tests[i]),
-                     tables::count_cell(nodes), tables::count_cell(nodes - visits.distinct[i])});
+      table.add_row({name_of(run.run), i + 1, visits.per_level[i], share(visits.per_level[i], all),
+                     visits.tests[i], nodes, nodes - visits.distinct[i]});
     }
   }
   return table;

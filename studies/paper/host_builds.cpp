@@ -66,22 +66,21 @@ std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun
 
 tables::Table host_building_table(std::size_t index, const PaperRun& run,
                                   std::span<const HostOutcome> outcomes) {
-  tables::Table table(fmt::format("host_table{}", index + 2),
-                      fmt::format("Table {} on the host: {}", index + 2, name_of(run)),
-                      {{"level", tables::ColumnType::integer, "1",
-                        "initial level: its nodes are not divided before the frame"},
-                       {"note", tables::ColumnType::text, "", "rules that choose the level"},
-                       {"build", tables::ColumnType::real, "s", "building to the initial level"},
-                       {"render", tables::ColumnType::real, "s", "the frame, building on demand included"},
-                       {"total", tables::ColumnType::real, "s", "both"},
-                       {"nodes", tables::ColumnType::integer, "1", "nodes that the frame leaves"},
-                       {"partial", tables::ColumnType::integer, "1", "of these, nodes left partially built"},
-                       {"memory", tables::ColumnType::integer, "byte", "host memory of nodes and lists"}});
+  tables::Table table(
+      fmt::format("host_table{}", index + 2),
+      fmt::format("Table {} on the host: {}", index + 2, name_of(run)),
+      {tables::count_column("level", "initial level: its nodes are not divided before the frame"),
+       tables::text_column("note", "rules that choose the level"),
+       tables::real_column("build", "s", "building to the initial level"),
+       tables::real_column("render", "s", "the frame, building on demand included"),
+       tables::real_column("total", "s", "both"),
+       tables::count_column("nodes", "nodes that the frame leaves"),
+       tables::count_column("partial", "of these, nodes left partially built"),
+       tables::integer_column("memory", "byte", "host memory of nodes and lists")});
   for (const HostOutcome& outcome : outcomes) {
-    table.add_row({tables::count_cell(outcome.initial.level), outcome.initial.note(), outcome.build_seconds,
-                   outcome.render_seconds, outcome.build_seconds + outcome.render_seconds,
-                   tables::count_cell(outcome.nodes), tables::count_cell(outcome.partial),
-                   tables::count_cell(outcome.bytes)});
+    table.add_row({outcome.initial.level, outcome.initial.note(), outcome.build_seconds,
+                   outcome.render_seconds, outcome.build_seconds + outcome.render_seconds, outcome.nodes,
+                   outcome.partial, outcome.bytes});
   }
   return table;
 }

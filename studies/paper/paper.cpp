@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "sim/units.h"
 #include "studies/host/image_file.h"
 #include "studies/paper/build_times.h"
@@ -45,8 +46,8 @@ tables::Table scene_table(const sim::Config& config, const PaperConfig& paper,
                           std::span<const SceneTrees> trees) {
   tables::Table table(
       "scenes", "The scenes",
-      {{"scene", tables::ColumnType::text, "", "scene"},
-       {"hash", tables::ColumnType::text, "", "hash of vertices, triangles, materials, lights and camera"}});
+      {tables::text_column("scene", "scene"),
+       tables::text_column("hash", "hash of vertices, triangles, materials, lights and camera")});
   std::set<std::string> known;
   for (const SceneTrees& scene : trees) {
     known.insert(scene.scene);
@@ -118,15 +119,11 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   }
   tables::Table scenes = scene_table(config, paper, trees);
 
-  std::vector<TracedRun> runs;
-  for (const PaperRun& run : paper.runs) {
-    runs.push_back(trace_run(paper, run));
-  }
+  const std::vector<TracedRun> runs =
+      sim::mapped(paper.runs, [&](const PaperRun& run) { return trace_run(paper, run); });
   const std::vector<RunOutcomes> outcomes = time_initial_levels(paper, runs);
-  std::vector<TaskTimes> times;
-  for (const RunOutcomes& run : outcomes) {
-    times.push_back(tasks_of(run.whole().time));
-  }
+  const std::vector<TaskTimes> times =
+      sim::mapped(outcomes, [&](const RunOutcomes& run) { return tasks_of(run.whole().time); });
 
   std::vector<tables::Claim> claims = check_tree_claims(trees);
   for (const std::vector<tables::Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {

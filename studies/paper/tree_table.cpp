@@ -54,19 +54,19 @@ SceneTrees measure_trees(const std::string& name, const scenes::Scene& scene,
 tables::Table tree_table(std::span<const SceneTrees> scenes, const memory::LayoutConfig& layout) {
   tables::Table table(
       "table1", "Table 1: octree and BSP tree of each scene",
-      {{"scene", tables::ColumnType::text, "", "scene"},
-       {"polygons", tables::ColumnType::integer, "1", "polygons of the scene's source"},
-       {"primitives", tables::ColumnType::integer, "1", "triangles they are cut into, and curved primitives"},
-       {"structure", tables::ColumnType::text, "", "octree or bsp"},
-       {"nodes", tables::ColumnType::integer, "1", "nodes of the whole tree"},
-       {"branches", tables::ColumnType::integer, "1", "nodes that were divided"},
-       {"leaves", tables::ColumnType::integer, "1", "nodes that were not, empty ones included"},
-       {"empty_leaves", tables::ColumnType::integer, "1", "leaves without triangles"},
-       {"entries", tables::ColumnType::integer, "1", "triangles listed in all leaves"},
-       {"levels", tables::ColumnType::integer, "1", "levels, the root's included"},
-       {"bytes", tables::ColumnType::integer, "byte", "node records and lists in the simulated database"},
-       {"nodes_to_octree", tables::ColumnType::real, "", "nodes as a multiple of the octree's"},
-       {"bytes_to_octree", tables::ColumnType::real, "", "bytes as a multiple of the octree's"}});
+      {tables::text_column("scene", "scene"),
+       tables::count_column("polygons", "polygons of the scene's source"),
+       tables::count_column("primitives", "triangles they are cut into, and curved primitives"),
+       tables::text_column("structure", "octree or bsp"),
+       tables::count_column("nodes", "nodes of the whole tree"),
+       tables::count_column("branches", "nodes that were divided"),
+       tables::count_column("leaves", "nodes that were not, empty ones included"),
+       tables::count_column("empty_leaves", "leaves without triangles"),
+       tables::count_column("entries", "triangles listed in all leaves"),
+       tables::count_column("levels", "levels, the root's included"),
+       tables::integer_column("bytes", "byte", "node records and lists in the simulated database"),
+       tables::real_column("nodes_to_octree", "", "nodes as a multiple of the octree's"),
+       tables::real_column("bytes_to_octree", "", "bytes as a multiple of the octree's")});
   for (const SceneTrees& scene : scenes) {
     const std::uint64_t octree_nodes = scene.octree.total().nodes();
     const std::uint64_t octree_bytes = bytes_of(scene.octree.levels, layout);
@@ -74,27 +74,22 @@ tables::Table tree_table(std::span<const SceneTrees> scenes, const memory::Layou
       const TreeSize& size = octree ? scene.octree : scene.bsp;
       const LevelCount total = size.total();
       const std::uint64_t bytes = bytes_of(size.levels, layout);
-      table.add_row({scene.scene, tables::count_cell(scene.polygons), tables::count_cell(scene.primitives),
-                     octree ? "octree" : "bsp", tables::count_cell(total.nodes()),
-                     tables::count_cell(total.branches), tables::count_cell(total.leaves),
-                     tables::count_cell(size.empty_leaves), tables::count_cell(total.leaf_entries),
-                     tables::count_cell(size.levels.size()), tables::count_cell(bytes),
-                     quotient(total.nodes(), octree_nodes), quotient(bytes, octree_bytes)});
+      table.add_row({scene.scene, scene.polygons, scene.primitives, octree ? "octree" : "bsp", total.nodes(),
+                     total.branches, total.leaves, size.empty_leaves, total.leaf_entries, size.levels.size(),
+                     bytes, quotient(total.nodes(), octree_nodes), quotient(bytes, octree_bytes)});
     }
   }
   return table;
 }
 
 tables::Table host_tree_table(std::span<const SceneTrees> scenes) {
-  tables::Table table(
-      "host_table1", "Table 1 on the host: building the whole tree",
-      {{"scene", tables::ColumnType::text, "", "scene"},
-       {"primitives", tables::ColumnType::integer, "1", "triangles and curved primitives"},
-       {"octree_seconds", tables::ColumnType::real, "s", "building the octree, on all host threads"},
-       {"bsp_seconds", tables::ColumnType::real, "s", "building the BSP tree, on one"}});
+  tables::Table table("host_table1", "Table 1 on the host: building the whole tree",
+                      {tables::text_column("scene", "scene"),
+                       tables::count_column("primitives", "triangles and curved primitives"),
+                       tables::real_column("octree_seconds", "s", "building the octree, on all host threads"),
+                       tables::real_column("bsp_seconds", "s", "building the BSP tree, on one")});
   for (const SceneTrees& scene : scenes) {
-    table.add_row({scene.scene, tables::count_cell(scene.primitives), scene.octree.build_seconds,
-                   scene.bsp.build_seconds});
+    table.add_row({scene.scene, scene.primitives, scene.octree.build_seconds, scene.bsp.build_seconds});
   }
   return table;
 }
@@ -102,17 +97,16 @@ tables::Table host_tree_table(std::span<const SceneTrees> scenes) {
 tables::Table rule_table(std::span<const SceneTrees> scenes) {
   tables::Table table(
       "rules", "Leaves against other nodes, level by level, in the octrees",
-      {{"scene", tables::ColumnType::text, "", "scene"},
-       {"level", tables::ColumnType::integer, "1", "level, the root's being 1"},
-       {"leaves", tables::ColumnType::integer, "1", "L: leaves of the level"},
-       {"others", tables::ColumnType::integer, "1",
-        "B + P: nodes of the level that are to be divided, whether they have been or not"},
-       {"ratio", tables::ColumnType::real, "", "L / (B + P); infinite where all nodes are leaves"}});
+      {tables::text_column("scene", "scene"), tables::count_column("level", "level, the root's being 1"),
+       tables::count_column("leaves", "L: leaves of the level"),
+       tables::count_column(
+           "others", "B + P: nodes of the level that are to be divided, whether they have been or not"),
+       tables::real_column("ratio", "", "L / (B + P); infinite where all nodes are leaves")});
   for (const SceneTrees& scene : scenes) {
     for (std::size_t i = 0; i < scene.octree.levels.size(); ++i) {
       const LevelCount& level = scene.octree.levels[i];
-      table.add_row({scene.scene, tables::count_cell(i + 1), tables::count_cell(level.leaves),
-                     tables::count_cell(level.branches + level.partial), level.leaf_ratio().value_or(0.0)});
+      table.add_row({scene.scene, i + 1, level.leaves, level.branches + level.partial,
+                     level.leaf_ratio().value_or(0.0)});
     }
   }
   return table;
@@ -121,15 +115,13 @@ tables::Table rule_table(std::span<const SceneTrees> scenes) {
 tables::Table rule_level_table(std::span<const SceneTrees> scenes, std::span<const double> rules) {
   tables::Table table(
       "rule_levels", "Where the rules stop: the first level with L > k (B + P)",
-      {{"scene", tables::ColumnType::text, "", "scene"},
-       {"k", tables::ColumnType::real, "", "the rule's factor"},
-       {"level", tables::ColumnType::integer, "1", "first such level; no value: there is none"},
-       {"levels", tables::ColumnType::integer, "1", "levels of the whole octree"}});
+      {tables::text_column("scene", "scene"), tables::real_column("k", "", "the rule's factor"),
+       tables::count_column("level", "first such level; no value: there is none"),
+       tables::count_column("levels", "levels of the whole octree")});
   for (const SceneTrees& scene : scenes) {
     for (const double k : rules) {
       const std::optional<std::uint32_t> level = rule_level(scene.octree.levels, k);
-      table.add_row({scene.scene, k, level ? tables::count_cell(*level) : tables::Cell(),
-                     tables::count_cell(scene.octree.levels.size())});
+      table.add_row({scene.scene, k, level, scene.octree.levels.size()});
     }
   }
   return table;

@@ -14,11 +14,10 @@ std::vector<CellPoint> time_cells(const SchemesConfig& config) {
 }
 
 tables::Table cell_table(std::span<const CellPoint> points) {
-  tables::Table table(
-      "cells", "Cells: what their size does to the caches",
-      tree_columns({"level", tables::ColumnType::integer, "1", "deepest level of the tree (root: 1)"}));
+  tables::Table table("cells", "Cells: what their size does to the caches",
+                      tree_columns(tables::count_column("level", "deepest level of the tree (root: 1)")));
   for (const CellPoint& point : points) {
-    table.add_row(tree_cells(tables::count_cell(point.level), point.tree));
+    table.add_row(tree_cells(point.level, point.tree));
   }
   return table;
 }

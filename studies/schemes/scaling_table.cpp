@@ -70,28 +70,19 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
 tables::Table scaling_table(std::span<const ScalingPoint> points) {
   tables::Table table(
       "schemes", "Schemes: how machines grow with their nodes",
-      {{"machine", tables::ColumnType::text, "", "file of the machine"},
-       {"scheme", tables::ColumnType::text, "", "its parallel scheme"},
-       {"nodes", tables::ColumnType::integer, "1", "processor nodes of all clusters"},
-       figure_column("end"),
-       {"one_node", tables::ColumnType::integer, "ps", "time of the frame with one node"},
-       figure_column("speed_up"),
-       figure_column("efficiency"),
-       {"limit", tables::ColumnType::text, "", "the largest part of the nodes' time"},
-       figure_column("interconnect_utilisation"),
-       figure_column("hit_ratio"),
-       {"waiting", tables::ColumnType::real, "fraction", "share of the nodes' time spent in queues"},
-       figure_column("share_idle"),
-       figure_column("network_messages"),
-       figure_column("network_bytes")});
-  const auto cell = [](const auto& value) { return value ? tables::Cell(*value) : tables::Cell(); };
+      {tables::text_column("machine", "file of the machine"),
+       tables::text_column("scheme", "its parallel scheme"),
+       tables::count_column("nodes", "processor nodes of all clusters"), figure_column("end"),
+       tables::integer_column("one_node", "ps", "time of the frame with one node"), figure_column("speed_up"),
+       figure_column("efficiency"), tables::text_column("limit", "the largest part of the nodes' time"),
+       figure_column("interconnect_utilisation"), figure_column("hit_ratio"),
+       tables::real_column("waiting", "fraction", "share of the nodes' time spent in queues"),
+       figure_column("share_idle"), figure_column("network_messages"), figure_column("network_bytes")});
   for (const ScalingPoint& point : points) {
-    table.add_row({point.machine,
-                   std::string(processors::machine::scheme_names[static_cast<std::size_t>(point.scheme)]),
-                   tables::count_cell(point.nodes), point.end, point.one_node_end, cell(point.speed_up),
-                   cell(point.efficiency), std::string(figures::name_of(point.limit)),
-                   cell(point.interconnect), cell(point.hit_ratio), point.waiting, point.idle,
-                   cell(point.messages), cell(point.message_bytes)});
+    table.add_row({point.machine, processors::machine::scheme_names[static_cast<std::size_t>(point.scheme)],
+                   point.nodes, point.end, point.one_node_end, point.speed_up, point.efficiency,
+                   figures::name_of(point.limit), point.interconnect, point.hit_ratio, point.waiting,
+                   point.idle, point.messages, point.message_bytes});
   }
   return table;
 }

@@ -70,19 +70,17 @@ std::vector<StagePoint> time_stages(const SchemesConfig& config, const processor
 tables::Table stage_table(std::span<const StagePoint> points) {
   tables::Table table(
       "stages", "Stages: a pipeline's nodes shared out in several ways",
-      {{"step", tables::ColumnType::integer, "1", "number of the way of sharing out"},
-       {"shares", tables::ColumnType::text, "", "nodes that search, intersect and shade"},
-       {"stage", tables::ColumnType::text, "", "one of the stages"},
-       {"nodes", tables::ColumnType::integer, "1", "its nodes"},
-       {"busy", tables::ColumnType::real, "fraction", "share of its nodes' time in which they worked"},
-       {"end", tables::ColumnType::integer, "ps", "time of the frame"}});
+      {tables::count_column("step", "number of the way of sharing out"),
+       tables::text_column("shares", "nodes that search, intersect and shade"),
+       tables::text_column("stage", "one of the stages"), tables::count_column("nodes", "its nodes"),
+       tables::real_column("busy", "fraction", "share of its nodes' time in which they worked"),
+       tables::integer_column("end", "ps", "time of the frame")});
   for (std::size_t step = 0; step < points.size(); ++step) {
     const StagePoint& point = points[step];
     const std::string shares = std::to_string(point.nodes[0]) + " + " + std::to_string(point.nodes[1]) +
                                " + " + std::to_string(point.nodes[2]);
     for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
-      table.add_row({tables::count_cell(step + 1), shares, std::string(stage_names[stage]),
-                     tables::count_cell(point.nodes[stage]), point.busy[stage], point.end});
+      table.add_row({step + 1, shares, stage_names[stage], point.nodes[stage], point.busy[stage], point.end});
     }
   }
   return table;

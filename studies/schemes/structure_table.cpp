@@ -15,7 +15,7 @@ std::vector<StructurePoint> time_structures(const SchemesConfig& config) {
 
 tables::Table structure_table(std::span<const StructurePoint> points) {
   tables::Table table("structures", "Structures: the same frame and machine with each",
-                      tree_columns({"structure", tables::ColumnType::text, "", "the structure"}));
+                      tree_columns(tables::text_column("structure", "the structure")));
   for (const StructurePoint& point : points) {
     table.add_row(tree_cells(point.name, point.tree));
   }

@@ -1,6 +1,5 @@
 #include "studies/schemes/tree_point.h"
 
-#include <optional>
 #include <utility>
 
 #include "processors/replay/replay.h"
@@ -28,28 +27,27 @@ tables::Column figure_column(std::string_view figure) {
 
 std::vector<tables::Column> tree_columns(tables::Column first) {
   return {std::move(first),
-          {"tree_nodes", tables::ColumnType::integer, "1", "nodes of the tree"},
-          {"tree_entries", tables::ColumnType::integer, "1", "object references in its leaves"},
+          tables::count_column("tree_nodes", "nodes of the tree"),
+          tables::count_column("tree_entries", "object references in its leaves"),
           figure_column("database_bytes"),
-          {"visits", tables::ColumnType::integer, "1", "nodes visited"},
-          {"tests", tables::ColumnType::integer, "1", "primitives tested"},
-          {"references", tables::ColumnType::integer, "1", "lines referred to"},
+          tables::count_column("visits", "nodes visited"),
+          tables::count_column("tests", "primitives tested"),
+          tables::count_column("references", "lines referred to"),
           figure_column("misses"),
           figure_column("hit_ratio"),
           figure_column("end")};
 }
 
 std::vector<tables::Cell> tree_cells(tables::Cell first, const TreePoint& point) {
-  const std::optional<double> hits = sim::ratio(point.references.all_hits(), point.references.references());
   return {std::move(first),
-          tables::count_cell(point.tree_nodes),
-          tables::count_cell(point.tree_entries),
-          tables::count_cell(point.database_bytes),
+          point.tree_nodes,
+          point.tree_entries,
+          point.database_bytes,
           point.steps.branches + point.steps.leaves,
           point.steps.tests,
           point.references.references(),
           point.references.all_misses(),
-          hits ? tables::Cell(*hits) : tables::Cell(),
+          sim::ratio(point.references.all_hits(), point.references.references()),
           point.end};
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/mapped.h"
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
 #include "studies/show/text_columns.h"
@@ -79,10 +80,10 @@ void class_lines(std::string& text, const run::RunResult& r) {
   const TextColumns table = {14, std::vector<int>(memory::miss_classes, 15)};
   text += "\n" + table.row("misses", {memory::miss_class_names.begin(), memory::miss_class_names.end()});
   const auto line = [&](const std::string& name) {
-    std::vector<std::string> cells;
-    for (const std::string_view kind : memory::miss_class_names) {
-      cells.push_back(std::to_string(r.count(name + "_misses_" + std::string(kind))));
-    }
+    const std::vector<std::string> cells =
+        sim::mapped(memory::miss_class_names, [&](const std::string_view kind) {
+          return std::to_string(r.count(name + "_misses_" + std::string(kind)));
+        });
     const bool none =
         std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell == "0"; });
     text += none && name != "all" ? std::string() : table.row("  " + name, cells);
@@ -143,22 +144,19 @@ std::string counts_lines(const run::RunResult& r) {
 
 tables::Table attribution_table(const std::vector<AttributionRow>& rows) {
   std::vector<tables::Column> columns = {
-      {"record", tables::ColumnType::text, "", "kind of record"},
-      {"level", tables::ColumnType::integer, "1",
-       "level of the tree node it was read for; 0 for materials and texels"},
-      {"ray", tables::ColumnType::text, "", "kind of ray"},
-      {"bounce", tables::ColumnType::integer, "1", "surface points between the eye and the ray's origin"},
-      {"work", tables::ColumnType::text, "", "trace: the ray's steps; split: splitting a branch for it"}};
+      tables::text_column("record", "kind of record"),
+      tables::count_column("level", "level of the tree node it was read for; 0 for materials and texels"),
+      tables::text_column("ray", "kind of ray"),
+      tables::count_column("bounce", "surface points between the eye and the ray's origin"),
+      tables::text_column("work", "trace: the ray's steps; split: splitting a branch for it")};
   for (const auto& counter : AttributionCounts::counters()) {
-    columns.push_back({json_name(counter), tables::ColumnType::integer, std::string(counter.unit),
-                       std::string(counter.description)});
+    columns.push_back(tables::integer_column(json_name(counter), counter.unit, counter.description));
   }
   tables::Table table("attribution", "References, misses and waits by what they were for", columns);
   for (const AttributionRow& row : rows) {
-    std::vector<tables::Cell> cells = {
-        std::string(name_of(row.record)), std::int64_t{row.level},
-        std::string(processors::program::ray_kind_names[static_cast<std::size_t>(row.ray)]),
-        std::int64_t{row.bounce}, std::string(work_of(row))};
+    std::vector<tables::Cell> cells = {name_of(row.record), row.level,
+                                       processors::program::ray_kind_names[static_cast<std::size_t>(row.ray)],
+                                       row.bounce, work_of(row)};
     sim::for_each_counter(row.counts,
                           [&](const auto& /*counter*/, std::int64_t value) { cells.emplace_back(value); });
     table.add_row(std::move(cells));

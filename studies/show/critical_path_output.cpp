@@ -10,6 +10,7 @@
 
 #include "processors/flow/pipeline/stages.h"
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -71,10 +72,9 @@ void add_critical_path(const run::RunResult& result, bool nodes, Json& machine) 
     time[std::string(processors::path::path_kind_names[kind])] = path.time[kind];
   }
   const std::vector<sim::Ticks> stages = of_stages(result);
-  Json levels = Json::array();
-  for (const processors::path::PathLevel& level : path.levels) {
-    levels.push_back({{"traversal_ps", level.traversal}, {"reads_ps", level.reads}});
-  }
+  const Json levels = sim::mapped(path.levels, [&](const processors::path::PathLevel& level) {
+    return Json{{"traversal_ps", level.traversal}, {"reads_ps", level.reads}};
+  });
   machine["critical_path"] = {{"time_ps", time},
                               {"nodes_ps", nodes ? Json(path.nodes) : Json(nullptr)},
                               {"stages_ps", stages.empty() ? Json(nullptr) : Json(stages)},

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "sim/mapped.h"
 #include "studies/figures/flow_figures.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
@@ -61,10 +62,8 @@ void load_line(std::back_insert_iterator<std::string> out, const figures::StageL
 nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResult& result, bool per_node) {
   const figures::FlowFigures figures = figures::flow_figures(machine, result);
   const processors::flow::FlowResult& flow = result.flow;
-  Json stages = Json::array();
-  for (const figures::StageLoad& stage : figures.stages) {
-    stages.push_back(load_json(stage));
-  }
+  const Json stages =
+      sim::mapped(figures.stages, [&](const figures::StageLoad& stage) { return load_json(stage); });
   Json nodes = nullptr;
   if (per_node) {
     nodes = Json::array();

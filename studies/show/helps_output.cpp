@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
 #include "studies/tables/text_units.h"
@@ -59,12 +60,11 @@ Json change_json(const helps::WhatHelps& what, const std::optional<helps::Measur
 }  // namespace
 
 Json helps_json(const helps::WhatHelps& what) {
-  Json resources = Json::array();
-  for (const helps::Help& help : what.helps) {
-    resources.push_back({{"resource", help.name},
-                         {"step", change_json(what, help.step)},
-                         {"best", change_json(what, help.best)}});
-  }
+  const Json resources = sim::mapped(what.helps, [&](const helps::Help& help) {
+    return Json{{"resource", help.name},
+                {"step", change_json(what, help.step)},
+                {"best", change_json(what, help.best)}};
+  });
   Json pair = nullptr;
   if (what.pair) {
     pair = {{"first", what.pair->first},

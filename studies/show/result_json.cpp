@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/plan/plan_output.h"
@@ -53,14 +54,13 @@ Json scene_json(const run::RunResult& r) {
 }
 
 Json structure_json(const run::RunResult& r) {
-  Json levels = Json::array();
-  for (const accel::LevelStatistics& level : r.functional.levels) {
-    levels.push_back({{"branches", level.branches},
-                      {"leaves", level.leaves},
-                      {"empty_leaves", level.empty_leaves},
-                      {"entries", level.entries},
-                      {"overfull_leaves", level.overfull_leaves}});
-  }
+  const Json levels = sim::mapped(r.functional.levels, [&](const accel::LevelStatistics& level) {
+    return Json{{"branches", level.branches},
+                {"leaves", level.leaves},
+                {"empty_leaves", level.empty_leaves},
+                {"entries", level.entries},
+                {"overfull_leaves", level.overfull_leaves}};
+  });
   return {{"kind", r.frame_config.structure},
           {"traversal", accel::traversal_names[static_cast<std::size_t>(r.functional.frame.log->traversal)]},
           {"mailboxes", r.functional.frame.log->mailboxes},
@@ -123,10 +123,9 @@ Json voxel_json(const run::RunResult& r) {
 
 Json wait_json(const memory::WaitStatistics& w) {
   Json object = counters_json(w);
-  Json buckets = Json::array();
-  for (const auto& bucket : w.histogram.buckets()) {
-    buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
-  }
+  const Json buckets = sim::mapped(w.histogram.buckets(), [&](const auto& bucket) {
+    return Json{bucket.lowest, bucket.highest, bucket.count};
+  });
   object["histogram_ps"] = buckets;
   return object;
 }
@@ -149,11 +148,7 @@ Json clusters_json(const processors::replay::MachineResult& result) {
     }
     clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
     if (!cluster.dram.empty() && cluster.dram.size() <= most_listed) {
-      Json channels = Json::array();
-      for (const memory::DramStatistics& channel : cluster.dram) {
-        channels.push_back(counters_json(channel));
-      }
-      clusters.back()["dram"] = channels;
+      clusters.back()["dram"] = counters_list(cluster.dram);
     }
     if (cluster.distributed) {
       Json network = counters_json(cluster.distributed->network);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/mapped.h"
 #include "sim/statistics.h"
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
@@ -119,27 +120,20 @@ void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
 }  // namespace
 
 nlohmann::ordered_json working_set_json(const WorkingSet& set) {
+  const auto pair_json = [](const Point& point) { return Json{point.size, point.misses}; };
   Json caches = Json::array();
   for (std::size_t i = 0; i < set.caches.size(); ++i) {
     const CacheWorkingSet& cache = set.caches[i];
-    Json sizes = Json::array();
-    for (const Point& point : powers_of_two(cache.distances)) {
-      sizes.push_back({point.size, point.misses});
-    }
-    Json ways = Json::array();
-    for (const Point& point : all_ways(cache)) {
-      ways.push_back({point.size, point.misses});
-    }
     caches.push_back({{"cache", name_of(set, i)},
                       {"references", cache.distances.references},
                       {"compulsory", cache.distances.compulsory},
                       {"lines_for_2_x_compulsory", lines_within(cache.distances, 20)},
                       {"lines_for_1_1_x_compulsory", lines_within(cache.distances, 11)},
                       {"lines_for_compulsory", cache.distances.enough()},
-                      {"fully_associative", sizes},
+                      {"fully_associative", sim::mapped(powers_of_two(cache.distances), pair_json)},
                       {"sets", cache.shape.sets},
                       {"machine_ways", cache.shape.ways},
-                      {"ways", ways}});
+                      {"ways", sim::mapped(all_ways(cache), pair_json)}});
   }
   return {{"line", set.line}, {"any_cache", set.any_cache}, {"caches", caches}};
 }
@@ -157,19 +151,17 @@ std::string working_set_lines(const WorkingSet& set) {
 }
 
 tables::Table working_set_table(const WorkingSet& set) {
-  tables::Table table(
-      "working_set", "Misses of first-level LRU caches by size and by ways",
-      {{"cache", tables::ColumnType::text, "", "the unified cache, or which of the split ones"},
-       {"sets", tables::ColumnType::integer, "1", "sets; 1: fully associative"},
-       {"ways", tables::ColumnType::integer, "1", "lines of a set"},
-       {"bytes", tables::ColumnType::integer, "byte", "size of the cache"},
-       {"misses", tables::ColumnType::integer, "1", "misses of all nodes' caches"},
-       {"miss_ratio", tables::ColumnType::real, "fraction", "misses of all references"}});
+  tables::Table table("working_set", "Misses of first-level LRU caches by size and by ways",
+                      {tables::text_column("cache", "the unified cache, or which of the split ones"),
+                       tables::count_column("sets", "sets; 1: fully associative"),
+                       tables::count_column("ways", "lines of a set"),
+                       tables::integer_column("bytes", "byte", "size of the cache"),
+                       tables::count_column("misses", "misses of all nodes' caches"),
+                       tables::real_column("miss_ratio", "fraction", "misses of all references")});
   for (std::size_t i = 0; i < set.caches.size(); ++i) {
     const CacheWorkingSet& cache = set.caches[i];
     const auto add = [&](std::uint32_t sets, const Point& point) {
-      table.add_row({std::string(name_of(set, i)), std::int64_t{sets}, tables::count_cell(point.size),
-                     tables::count_cell(point.size * sets * set.line), point.misses,
+      table.add_row({name_of(set, i), sets, point.size, point.size * sets * set.line, point.misses,
                      share_of(point.misses, cache.distances.references)});
     };
     for (const Point& point : thinned(cache.distances)) {

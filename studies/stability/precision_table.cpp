@@ -77,23 +77,19 @@ std::vector<PrecisionRow> compare_precisions(std::uint32_t rays, bool floats) {
 tables::Table precision_table(const std::vector<PrecisionRow>& rows) {
   tables::Table table(
       "float_double", "Floats beside doubles: a teapot moved along every axis, the same rays at it",
-      {{"offset", tables::ColumnType::real, "1", "the teapot is moved so far along every axis"},
-       {"steps", tables::ColumnType::real, "1", "floats across the teapot's longest axis, at its place"},
-       {"triangles", tables::ColumnType::integer, "1", "of the teapot"},
-       {"collapsed", tables::ColumnType::integer, "1", "triangles that have no area in floats"},
-       {"rays", tables::ColumnType::integer, "1", "traced at each place"},
-       {"hits", tables::ColumnType::integer, "1", "of these, hit the teapot at the origin, in doubles"},
-       {"float_agrees", tables::ColumnType::real, "fraction",
-        "rays that hit the same in floats as in doubles"},
-       {"double_agrees", tables::ColumnType::real, "fraction",
-        "rays that hit the same in doubles as at the origin"},
-       {"advice", tables::ColumnType::text, "", "what the program says of the scene"}});
+      {tables::real_column("offset", "1", "the teapot is moved so far along every axis"),
+       tables::real_column("steps", "1", "floats across the teapot's longest axis, at its place"),
+       tables::count_column("triangles", "of the teapot"),
+       tables::count_column("collapsed", "triangles that have no area in floats"),
+       tables::count_column("rays", "traced at each place"),
+       tables::count_column("hits", "of these, hit the teapot at the origin, in doubles"),
+       tables::real_column("float_agrees", "fraction", "rays that hit the same in floats as in doubles"),
+       tables::real_column("double_agrees", "fraction", "rays that hit the same in doubles as at the origin"),
+       tables::text_column("advice", "what the program says of the scene")});
   for (const PrecisionRow& row : rows) {
-    table.add_row({row.offset, row.need.steps, tables::count_cell(row.need.primitives),
-                   tables::count_cell(row.need.collapsed), tables::count_cell(row.rays),
-                   tables::count_cell(row.hits), share(row.float_agree, row.rays),
-                   share(row.double_agree, row.rays),
-                   std::string(row.need.wants_double() ? "doubles" : "floats would do")});
+    table.add_row({row.offset, row.need.steps, row.need.primitives, row.need.collapsed, row.rays, row.hits,
+                   share(row.float_agree, row.rays), share(row.double_agree, row.rays),
+                   row.need.wants_double() ? "doubles" : "floats would do"});
   }
   return table;
 }

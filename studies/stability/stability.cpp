@@ -18,22 +18,20 @@ namespace {
 tables::Table empty_table() {
   return tables::Table(
       "stability", "Stiff and extreme cases",
-      {{"group", tables::ColumnType::text, "", "what is tried"},
-       {"case", tables::ColumnType::text, "", "its name"},
-       {"what_could_go_wrong", tables::ColumnType::text, "", "what breaks where no care is taken"},
-       {"oracle", tables::ColumnType::text, "", "what must hold instead"},
-       {"figure", tables::ColumnType::text, "", "what was found"},
-       {"objection", tables::ColumnType::real, "1",
-        "what the oracle objects to; nan when the case ended early"},
-       {"limit", tables::ColumnType::real, "1", "the most it may be"},
-       {"verdict", tables::ColumnType::text, "", "pass or FAIL"}});
+      {tables::text_column("group", "what is tried"), tables::text_column("case", "its name"),
+       tables::text_column("what_could_go_wrong", "what breaks where no care is taken"),
+       tables::text_column("oracle", "what must hold instead"),
+       tables::text_column("figure", "what was found"),
+       tables::real_column("objection", "1", "what the oracle objects to; nan when the case ended early"),
+       tables::real_column("limit", "1", "the most it may be"),
+       tables::text_column("verdict", "pass or FAIL")});
 }
 
 tables::Table empty_times() {
   return tables::Table(
       "stability_times", "CPU time of each case on this computer",
-      {{"case", tables::ColumnType::text, "", "its name"},
-       {"cpu_time", tables::ColumnType::real, "s", "process CPU time, building what it needs included"}});
+      {tables::text_column("case", "its name"),
+       tables::real_column("cpu_time", "s", "process CPU time, building what it needs included")});
 }
 
 }  // namespace
@@ -57,9 +55,8 @@ tables::StudyOutput run_stability(sim::Config& config, std::span<const Stability
     const double before = host::process_cpu_seconds();
     const CaseOutcome outcome = run_case(one, size);
     times.add_row({one.id, host::process_cpu_seconds() - before});
-    table.add_row({std::string(one.group == CaseGroup::geometry ? "geometry" : "machine"), one.id, one.risk,
-                   one.oracle, outcome.figure, outcome.value, outcome.limit,
-                   std::string(outcome.passed() ? "pass" : "FAIL")});
+    table.add_row({one.group == CaseGroup::geometry ? "geometry" : "machine", one.id, one.risk, one.oracle,
+                   outcome.figure, outcome.value, outcome.limit, outcome.passed() ? "pass" : "FAIL"});
     if (!outcome.passed()) {
       ++failures;
       failed += (failed.empty() ? "" : ", ") + one.id;

@@ -14,6 +14,7 @@
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/input_files.h"
+#include "sim/mapped.h"
 #include "studies/host/signals_held.h"
 #include "studies/show/output.h"
 #include "studies/sweep/ranks/rank_sweep.h"
@@ -44,11 +45,8 @@ unsigned threads_of(const SweepOptions& options) {
 
 template <class Part>
 std::vector<bool> found_in(const std::vector<std::string>& keys, const std::vector<Part>& parts) {
-  std::vector<bool> found;
-  for (const Part& part : parts) {
-    found.push_back(std::binary_search(keys.begin(), keys.end(), part.key));
-  }
-  return found;
+  return sim::mapped(
+      parts, [&](const Part& part) { return std::binary_search(keys.begin(), keys.end(), part.key); });
 }
 
 // Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,

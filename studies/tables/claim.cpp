@@ -22,13 +22,12 @@ std::string_view name_of(Verdict verdict) {
 
 Table claim_table(std::span<const Claim> claims) {
   Table table("claims", "The paper's statements",
-              {{"subject", ColumnType::text, "", "what it is about"},
-               {"paper", ColumnType::text, "", "what the paper says"},
-               {"here", ColumnType::text, "", "what was measured"},
-               {"verdict", ColumnType::text, "", "agrees, in part, differs, or not measured"}});
+              {text_column("subject", "what it is about"), text_column("paper", "what the paper says"),
+               text_column("here", "what was measured"),
+               text_column("verdict", "agrees, in part, differs, or not measured")});
   for (const Claim& claim : claims) {
-    table.add_row({claim.subject, claim.paper, claim.here.empty() ? Cell() : Cell(claim.here),
-                   std::string(name_of(claim.verdict))});
+    table.add_row(
+        {claim.subject, claim.paper, claim.here.empty() ? Cell() : Cell(claim.here), name_of(claim.verdict)});
   }
   return table;
 }

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "sim/mapped.h"
+
 namespace marti::studies::tables {
 
 namespace {
@@ -58,10 +60,9 @@ Json rows_json(const Table& table) {
 }
 
 std::string json_of(const Table& table) {
-  Json columns = Json::array();
-  for (const Column& column : table.columns()) {
-    columns.push_back({{"name", column.name}, {"unit", column.unit}, {"description", column.description}});
-  }
+  const Json columns = sim::mapped(table.columns(), [&](const Column& column) {
+    return Json{{"name", column.name}, {"unit", column.unit}, {"description", column.description}};
+  });
   const Json whole = {
       {"name", table.name()}, {"title", table.title()}, {"columns", columns}, {"rows", rows_json(table)}};
   return json_text(whole);

@@ -33,19 +33,19 @@ std::string system_name() {
 
 Table provenance_table(std::span<const sim::EffectiveValue> values) {
   Table table("provenance", "Program and settings",
-              {{"setting", ColumnType::text, "", "version, or a key of the configuration"},
-               {"value", ColumnType::text, "", "its value, as in a TOML file"},
-               {"given", ColumnType::integer, "1", "1: by file or command line; 0: the default"}});
-  table.add_row({"version", std::string(version), std::int64_t{0}});
+              {text_column("setting", "version, or a key of the configuration"),
+               text_column("value", "its value, as in a TOML file"),
+               count_column("given", "1: by file or command line; 0: the default")});
+  table.add_row({"version", version, std::int64_t{0}});
   for (const sim::EffectiveValue& value : values) {
-    table.add_row({value.key, value.value, std::int64_t{value.given ? 1 : 0}});
+    table.add_row({value.key, value.value, value.given});
   }
   return table;
 }
 
 Table host_table() {
   Table table("host", "The computer that ran the study",
-              {{"what", ColumnType::text, "", "property"}, {"value", ColumnType::text, "", "its value"}});
+              {text_column("what", "property"), text_column("value", "its value")});
   table.add_row({"processor", processor_model()});
   table.add_row({"system", system_name()});
   table.add_row({"threads", std::to_string(tbb::this_task_arena::max_concurrency())});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "sim/error.h"
@@ -12,7 +11,7 @@ namespace marti::studies::tables {
 namespace {
 
 bool is_plain(std::string_view name, bool key = false) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [key](char c) {
+  return !name.empty() && std::ranges::all_of(name, [key](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || (key && c == '.');
   });
 }
@@ -37,6 +36,40 @@ bool fits(const Cell& cell, ColumnType type) {
 }
 
 }  // namespace
+
+Column text_column(std::string_view name, std::string_view description) {
+  return {std::string(name), ColumnType::text, "", std::string(description)};
+}
+
+Column count_column(std::string_view name, std::string_view description) {
+  return integer_column(name, "1", description);
+}
+
+Column integer_column(std::string_view name, std::string_view unit, std::string_view description) {
+  return {std::string(name), ColumnType::integer, std::string(unit), std::string(description)};
+}
+
+Column real_column(std::string_view name, std::string_view unit, std::string_view description) {
+  return {std::string(name), ColumnType::real, std::string(unit), std::string(description)};
+}
+
+Cell::Cell(const std::optional<std::int64_t>& number) {
+  if (number) {
+    *this = *number;
+  }
+}
+
+Cell::Cell(const std::optional<double>& number) {
+  if (number) {
+    *this = *number;
+  }
+}
+
+Cell::Cell(const Cell& other) = default;
+Cell::Cell(Cell&& other) noexcept = default;
+Cell& Cell::operator=(const Cell& other) = default;
+Cell& Cell::operator=(Cell&& other) noexcept = default;
+Cell::~Cell() = default;
 
 Table::Table(std::string name, std::string title, std::vector<Column> columns)
     : name_(std::move(name)), title_(std::move(title)), columns_(std::move(columns)) {
@@ -90,18 +123,11 @@ const Cell& Table::at(std::size_t row, std::string_view column_name) const {
   return rows_[row][column(column_name)];
 }
 
-Cell count_cell(std::uint64_t count) {
-  sim::ensure(count <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()),
-              "a count does not fit a table");
-  return static_cast<std::int64_t>(count);
-}
-
 Table describe_columns(std::span<const Table> tables) {
-  Table described("columns", "Every column of every table",
-                  {{"table_name", ColumnType::text, "", "table"},
-                   {"column_name", ColumnType::text, "", "column"},
-                   {"unit", ColumnType::text, "", "unit; 1 for a count, empty for a text"},
-                   {"description", ColumnType::text, "", "meaning"}});
+  Table described(
+      "columns", "Every column of every table",
+      {text_column("table_name", "table"), text_column("column_name", "column"),
+       text_column("unit", "unit; 1 for a count, empty for a text"), text_column("description", "meaning")});
   for (const Table& table : tables) {
     for (const Column& column : table.columns()) {
       described.add_row({table.name(), column.name, column.unit, column.description});

@@ -2,13 +2,19 @@
 // output format; the writers beside this file turn it into CSV, SQLite, aligned text and charts.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
+
+#include "sim/error.h"
 
 namespace marti::studies::tables {
 
@@ -24,8 +30,42 @@ struct Column {
   std::string description;  ///< for people, without the full stop
 };
 
-/// No value, an integer, a real or a text. A real may be NaN or infinite.
-using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+[[nodiscard]] Column text_column(std::string_view name, std::string_view description);
+/// Of unit "1".
+[[nodiscard]] Column count_column(std::string_view name, std::string_view description);
+[[nodiscard]] Column integer_column(std::string_view name, std::string_view unit,
+                                    std::string_view description);
+[[nodiscard]] Column real_column(std::string_view name, std::string_view unit, std::string_view description);
+
+using CellValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// No value, an integer, a real or a text. A real may be NaN or infinite. Whatever has such a value is a
+/// cell: a count, a flag, any text, and what may have no value.
+class Cell : public CellValue {
+ public:
+  Cell() = default;
+  /// Throws InternalError for a number that does not fit.
+  template <std::integral Number>
+  Cell(Number number) : CellValue(static_cast<std::int64_t>(number)) {
+    sim::ensure(std::is_signed_v<Number> || static_cast<std::int64_t>(number) >= 0,
+                "a count does not fit a table");
+  }
+  Cell(double number) : CellValue(number) {}
+  Cell(std::string text) : CellValue(std::move(text)) {}
+  Cell(std::string_view text) : CellValue(std::string(text)) {}
+  Cell(const char* text) : CellValue(std::string(text)) {}
+  template <std::integral Number>
+  Cell(const std::optional<Number>& number)
+      : Cell(number ? std::optional<std::int64_t>(*number) : std::nullopt) {}
+  // These are defined elsewhere: GCC 12, where it inlines them, warns of a text that is not there.
+  Cell(const std::optional<std::int64_t>& number);
+  Cell(const std::optional<double>& number);
+  Cell(const Cell& other);
+  Cell(Cell&& other) noexcept;
+  Cell& operator=(const Cell& other);
+  Cell& operator=(Cell&& other) noexcept;
+  ~Cell();
+};
 
 class Table {
  public:
@@ -57,9 +97,6 @@ class Table {
   std::vector<Column> columns_;
   std::vector<std::vector<Cell>> rows_;
 };
-
-/// An unsigned count as a cell. Throws InternalError when it does not fit.
-[[nodiscard]] Cell count_cell(std::uint64_t count);
 
 /// The table "columns": table, name, unit and description of every column of `tables`.
 [[nodiscard]] Table describe_columns(std::span<const Table> tables);

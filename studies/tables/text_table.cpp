@@ -1,4 +1,5 @@
 #include "studies/tables/text_table.h"
+#include "sim/mapped.h"
 #include "studies/tables/text_units.h"
 
 #include <fmt/format.h>
@@ -105,10 +106,8 @@ std::string text_of(const Table& table) {
       line.push_back(text_of(in_words(row[i], table.columns()[i].type), shown(table.columns()[i])));
     }
   }
-  std::vector<bool> left;
-  for (const Column& column : table.columns()) {
-    left.push_back(column.type == ColumnType::text);
-  }
+  const std::vector<bool> left =
+      sim::mapped(table.columns(), [&](const Column& column) { return column.type == ColumnType::text; });
   return table.title() + "\n" + aligned(lines, left);
 }
 

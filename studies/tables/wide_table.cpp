@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 
 namespace marti::studies::tables {
 
@@ -38,20 +39,16 @@ Table widen(const Table& table, std::span<const std::string_view> keys, std::str
   std::vector<std::string> names;
   std::vector<std::vector<Cell>> cells;
   for (std::size_t row = 0; row < table.rows().size(); ++row) {
-    std::vector<Cell> key;
-    for (const std::string_view name : keys) {
-      key.push_back(table.at(row, name));
-    }
+    std::vector<Cell> key =
+        sim::mapped(keys, [&](const std::string_view name) { return table.at(row, name); });
     const std::size_t to = index_of(rows, std::move(key));
     const std::size_t column = index_of(names, std::string(prefix) + plain_text(table.at(row, spread)));
     cells.resize(rows.size());
     cells[to].resize(std::max(cells[to].size(), column + 1));
     cells[to][column] = table.at(row, value);
   }
-  std::vector<Column> columns;
-  for (const std::string_view name : keys) {
-    columns.push_back(table.columns()[table.column(name)]);
-  }
+  std::vector<Column> columns =
+      sim::mapped(keys, [&](const std::string_view name) { return table.columns()[table.column(name)]; });
   for (const std::string& name : names) {
     Column column = table.columns()[table.column(value)];
     column.name = name;

@@ -10,6 +10,7 @@
 
 #include "processors/program/shading.h"
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/host/image_file.h"
 #include "studies/run/plan/make_plan.h"
 #include "studies/show/result_json.h"
@@ -188,12 +189,9 @@ processors::program::WorkLog without_shadows_at(const std::vector<bool>& materia
 }
 
 std::vector<bool> unlit_materials(const scenes::Scene& scene) {
-  std::vector<bool> unlit;
-  for (const scenes::Material& material : scene.materials) {
-    unlit.push_back(processors::program::asks_lights(material) &&
-                    !processors::program::shows_light(material));
-  }
-  return unlit;
+  return sim::mapped(scene.materials, [&](const scenes::Material& material) {
+    return processors::program::asks_lights(material) && !processors::program::shows_light(material);
+  });
 }
 
 std::string difference_of(const processors::program::WorkLog& a, const processors::program::WorkLog& b) {

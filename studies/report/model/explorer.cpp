@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "memory/record_kind.h"
+#include "sim/mapped.h"
 #include "sim/rounded.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
@@ -230,17 +231,10 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
     if (each.numeric) {
       json["axes"].back()["x"] = channel_of(each);
     }
-    Json place = Json::array();
-    for (const ReportPoint& point : sweep.points) {
-      place.push_back(point.place[i]);
-    }
-    json["place"].push_back(std::move(place));
+    json["place"].push_back(
+        sim::mapped(sweep.points, [&](const ReportPoint& point) { return point.place[i]; }));
   }
-  Json ordinals = Json::array();
-  for (const ReportPoint& point : sweep.points) {
-    ordinals.push_back(point.ordinal);
-  }
-  json["ordinal"] = std::move(ordinals);
+  json["ordinal"] = sim::mapped(sweep.points, &ReportPoint::ordinal);
   json["fronts"] = {{"price", chosen.front}, {"energy", chosen.energy_front}};
   json["fields"] = Json::array();
   json["columns"] = Json::object();

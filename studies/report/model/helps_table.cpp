@@ -23,27 +23,24 @@ std::string keys_text(const tables::RunJson& change) {
   return helps::describe(keys);
 }
 
-tables::Cell cell(const std::optional<double>& value) {
-  return value ? tables::Cell(*value) : tables::Cell();
-}
-
 }  // namespace
 
 tables::Table helps_table(const tables::RunJson& run) {
   tables::Table table(
       "what_helps", "What would make the frame shorter",
-      {{"step", tables::ColumnType::text, "", "what is changed, and nothing else"},
-       {"saved", tables::ColumnType::real, "fraction", "of the frame time; empty: not replayed"},
-       {"most_saved", tables::ColumnType::real, "fraction", "more cannot be saved, by the nodes' own work"},
-       {"price", tables::ColumnType::real, "1",
-        "of the step, by [prices]; smaller packets, regions and another way of building cost nothing"},
-       {"at_best", tables::ColumnType::text, "", "the same resource as if it cost nothing"},
-       {"saved_at_best", tables::ColumnType::real, "fraction", "of the frame time; empty: not replayed"}});
+      {tables::text_column("step", "what is changed, and nothing else"),
+       tables::real_column("saved", "fraction", "of the frame time; empty: not replayed"),
+       tables::real_column("most_saved", "fraction", "more cannot be saved, by the nodes' own work"),
+       tables::real_column(
+           "price", "1",
+           "of the step, by [prices]; smaller packets, regions and another way of building cost nothing"),
+       tables::text_column("at_best", "the same resource as if it cost nothing"),
+       tables::real_column("saved_at_best", "fraction", "of the frame time; empty: not replayed")});
   for (const tables::RunJson& resource : run.list("machine.what_helps.resources")) {
     const tables::RunJson step = resource.part("step");
     const tables::RunJson best = resource.part("best");
-    table.add_row({keys_text(step), cell(step.number("saved")), cell(step.number("most_saved")),
-                   cell(step.number("price")), keys_text(best), cell(best.number("saved"))});
+    table.add_row({keys_text(step), step.number("saved"), step.number("most_saved"), step.number("price"),
+                   keys_text(best), best.number("saved")});
   }
   return table;
 }

@@ -9,11 +9,10 @@
 namespace marti::studies::report {
 
 void add_path_chart(const tables::RunJson& run, ReportData& report) {
-  tables::Table table(
-      "run_path", "The critical path",
-      {{"what", tables::ColumnType::text, "", "what is done, see docs/model.md, The critical path"},
-       {"ps", tables::ColumnType::integer, "ps", "time of it on the path"},
-       {"share", tables::ColumnType::real, "fraction", "of the frame time"}});
+  tables::Table table("run_path", "The critical path",
+                      {tables::text_column("what", "what is done, see docs/model.md, The critical path"),
+                       tables::integer_column("ps", "ps", "time of it on the path"),
+                       tables::real_column("share", "fraction", "of the frame time")});
   const tables::RunJson times = run.part("machine.critical_path.time_ps");
   if (!times.json().is_object()) {
     return;

@@ -11,7 +11,6 @@
 
 #include "processors/cost/accounting.h"
 #include "processors/energy/energy.h"
-#include "sim/error.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/chart_library.h"
 
@@ -46,9 +45,9 @@ void add(ReportData& report, const tables::Table& table, const std::string& note
 
 tables::Table cycles_table(const tables::RunJson& run) {
   tables::Table table("run_cycles", "Where the nodes' time goes",
-                      {{"activity", tables::ColumnType::text, "", "see docs/model.md, Accounting"},
-                       {"ps", tables::ColumnType::integer, "ps", "time of all nodes"},
-                       {"share", tables::ColumnType::real, "fraction", "of all nodes' time"}});
+                      {tables::text_column("activity", "see docs/model.md, Accounting"),
+                       tables::integer_column("ps", "ps", "time of all nodes"),
+                       tables::real_column("share", "fraction", "of all nodes' time")});
   double all = 0.0;
   for (const std::string_view activity : processors::cost::activity_names) {
     all += run.count("figures.machine.time_" + std::string(activity));
@@ -56,7 +55,7 @@ tables::Table cycles_table(const tables::RunJson& run) {
   for (const std::string_view activity : processors::cost::activity_names) {
     const std::int64_t ps = whole(run, "figures.machine.time_" + std::string(activity));
     if (ps > 0) {
-      table.add_row({std::string(activity), ps, static_cast<double>(ps) / all});
+      table.add_row({activity, ps, static_cast<double>(ps) / all});
     }
   }
   return table;
@@ -64,9 +63,9 @@ tables::Table cycles_table(const tables::RunJson& run) {
 
 tables::Table energy_table(const tables::RunJson& run) {
   tables::Table table("run_energy", "Where the energy goes",
-                      {{"part", tables::ColumnType::text, "", "see docs/model.md, Energy"},
-                       {"fj", tables::ColumnType::integer, "fJ", "energy of the frame"},
-                       {"share", tables::ColumnType::real, "fraction", "of all energy"}});
+                      {tables::text_column("part", "see docs/model.md, Energy"),
+                       tables::integer_column("fj", "fJ", "energy of the frame"),
+                       tables::real_column("share", "fraction", "of all energy")});
   const double all = run.count("figures.machine.energy_total");
   for (std::size_t i = 0; all > 0.0 && i < processors::energy::energy_parts; ++i) {
     const std::string part(processors::energy::EnergyResult::counters().at(i).name);
@@ -78,8 +77,8 @@ tables::Table energy_table(const tables::RunJson& run) {
 
 tables::Table loss_table(const tables::RunJson& run) {
   tables::Table table("run_loss", "Where the lost speed-up went",
-                      {{"part", tables::ColumnType::text, "", "see docs/model.md, Speed-up"},
-                       {"lost", tables::ColumnType::real, "1", "of the ideal speed-up; below 0: won"}});
+                      {tables::text_column("part", "see docs/model.md, Speed-up"),
+                       tables::real_column("lost", "1", "of the ideal speed-up; below 0: won")});
   if (run.count("figures.machine.nodes") <= 1.0) {
     return table;
   }
@@ -91,24 +90,23 @@ tables::Table loss_table(const tables::RunJson& run) {
   }
   // A store of an older format has not all of them.
   for (std::size_t i = 0; parts.size() == figures::loss_names.size() && i < parts.size(); ++i) {
-    table.add_row({std::string(figures::loss_names[i]), parts[i]});
+    table.add_row({figures::loss_names[i], parts[i]});
   }
   return table;
 }
 
 tables::Table references_table(const tables::RunJson& run) {
-  tables::Table table(
-      "run_references", "References and hit ratio by kind of record",
-      {{"record", tables::ColumnType::text, "", "kind of record"},
-       {"hits", tables::ColumnType::integer, "1", "references that hit the first-level cache"},
-       {"misses", tables::ColumnType::integer, "1", "references that missed"},
-       {"hit_ratio", tables::ColumnType::real, "fraction", "hits by both"}});
+  tables::Table table("run_references", "References and hit ratio by kind of record",
+                      {tables::text_column("record", "kind of record"),
+                       tables::count_column("hits", "references that hit the first-level cache"),
+                       tables::count_column("misses", "references that missed"),
+                       tables::real_column("hit_ratio", "fraction", "hits by both")});
   for (const std::string_view kind : memory::record_kind_names) {
     const std::string prefix = "figures.machine." + std::string(kind);
     const std::int64_t hits = whole(run, prefix + "_hits");
     const std::int64_t misses = whole(run, prefix + "_misses");
     if (const std::int64_t all = plus(hits, misses); all > 0) {
-      table.add_row({std::string(kind), hits, misses, static_cast<double>(hits) / static_cast<double>(all)});
+      table.add_row({kind, hits, misses, static_cast<double>(hits) / static_cast<double>(all)});
     }
   }
   return table;
@@ -122,12 +120,12 @@ std::int64_t size_of(const tables::RunJson& run, const std::string& key) {
 }
 
 tables::Table tree_table(const tables::RunJson& run) {
-  tables::Table table("run_tree", "The tree by level",
-                      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
-                       {"branches", tables::ColumnType::integer, "1", "branches"},
-                       {"leaves", tables::ColumnType::integer, "1", "leaves, empty ones included"},
-                       {"empty_leaves", tables::ColumnType::integer, "1", "leaves without objects"},
-                       {"entries", tables::ColumnType::integer, "1", "object references"}});
+  tables::Table table(
+      "run_tree", "The tree by level",
+      {tables::count_column("level", "from 1, the root"), tables::count_column("branches", "branches"),
+       tables::count_column("leaves", "leaves, empty ones included"),
+       tables::count_column("empty_leaves", "leaves without objects"),
+       tables::count_column("entries", "object references")});
   std::int64_t level = 0;
   for (const tables::RunJson& each : run.list("structure.levels")) {
     table.add_row({++level, whole(each, "branches"), whole(each, "leaves"), whole(each, "empty_leaves"),
@@ -138,9 +136,9 @@ tables::Table tree_table(const tables::RunJson& run) {
 
 tables::Table level_memory_table(const tables::RunJson& run) {
   tables::Table table("run_level_memory", "Memory by level of the tree",
-                      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
-                       {"node_bytes", tables::ColumnType::integer, "byte", "node records"},
-                       {"list_bytes", tables::ColumnType::integer, "byte", "object lists"}});
+                      {tables::count_column("level", "from 1, the root"),
+                       tables::integer_column("node_bytes", "byte", "node records"),
+                       tables::integer_column("list_bytes", "byte", "object lists")});
   const std::int64_t node = size_of(run, "layout.node");
   const std::int64_t entry = size_of(run, "layout.entry");
   std::int64_t level = 0;
@@ -155,9 +153,8 @@ tables::Table level_memory_table(const tables::RunJson& run) {
 tables::Table memory_table(const tables::RunJson& run) {
   tables::Table table(
       "run_memory", "Memory by kind of record",
-      {{"record", tables::ColumnType::text, "", "kind of record"},
-       {"records", tables::ColumnType::integer, "1", "how many"},
-       {"bytes", tables::ColumnType::integer, "byte", "records by their size, without alignment"}});
+      {tables::text_column("record", "kind of record"), tables::count_column("records", "how many"),
+       tables::integer_column("bytes", "byte", "records by their size, without alignment")});
   const std::int64_t quadrics =
       plus(plus(whole(run, "figures.frame.spheres"), whole(run, "figures.frame.cylinders")),
            whole(run, "figures.frame.cones"));
@@ -169,17 +166,16 @@ tables::Table memory_table(const tables::RunJson& run) {
       {"materials", "layout.material", whole(run, "figures.frame.materials")}};
   for (const auto& [name, key, count] : kinds) {
     if (count > 0 && size_of(run, key) > 0) {
-      table.add_row({std::string(name), count, times(count, size_of(run, key))});
+      table.add_row({name, count, times(count, size_of(run, key))});
     }
   }
   return table;
 }
 
 tables::Table visits_table(const tables::RunJson& run) {
-  tables::Table table(
-      "run_visits", "Visits by level of the tree",
-      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
-       {"visits", tables::ColumnType::integer, "1", "visits of rays to nodes of this level"}});
+  tables::Table table("run_visits", "Visits by level of the tree",
+                      {tables::count_column("level", "from 1, the root"),
+                       tables::count_column("visits", "visits of rays to nodes of this level")});
   std::int64_t level = 0;
   for (const tables::RunJson& each : run.list("machine.build.levels")) {
     table.add_row({++level, whole(each, "visits")});
@@ -203,14 +199,13 @@ void add_levels(const tables::RunJson& run, ReportData& report) {
   }
   tables::Table accesses(
       "run_level_accesses", "Accesses by level of the tree",
-      {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
-       {"record", tables::ColumnType::text, "", "kind of record"},
-       {"references", tables::ColumnType::integer, "1", "references of the first level of caches"},
-       {"misses", tables::ColumnType::integer, "1", "of these, misses"}});
-  tables::Table ratios("run_level_hit_ratio", "Hit ratio by level of the tree",
-                       {{"level", tables::ColumnType::integer, "1", "from 1, the root"},
-                        {"record", tables::ColumnType::text, "", "kind of record"},
-                        {"hit_ratio", tables::ColumnType::real, "fraction", "hits by references"}});
+      {tables::count_column("level", "from 1, the root"), tables::text_column("record", "kind of record"),
+       tables::count_column("references", "references of the first level of caches"),
+       tables::count_column("misses", "of these, misses")});
+  tables::Table ratios(
+      "run_level_hit_ratio", "Hit ratio by level of the tree",
+      {tables::count_column("level", "from 1, the root"), tables::text_column("record", "kind of record"),
+       tables::real_column("hit_ratio", "fraction", "hits by references")});
   for (const auto& [place, sum] : levels) {
     accesses.add_row({place.first, place.second, sum.references, sum.misses});
     if (sum.references > 0) {
@@ -240,10 +235,10 @@ void add_histogram(const tables::RunJson& waits, Histogram& histogram) {
 
 tables::Table waits_table(const tables::RunJson& run) {
   tables::Table table("run_waits", "Waits",
-                      {{"what", tables::ColumnType::text, "", "what is waited for"},
-                       {"highest_ps", tables::ColumnType::integer, "ps", "upper end of a bucket"},
-                       {"count", tables::ColumnType::integer, "1", "waits in it"},
-                       {"share", tables::ColumnType::real, "fraction", "of the waits that are not longer"}});
+                      {tables::text_column("what", "what is waited for"),
+                       tables::integer_column("highest_ps", "ps", "upper end of a bucket"),
+                       tables::count_column("count", "waits in it"),
+                       tables::real_column("share", "fraction", "of the waits that are not longer")});
   std::map<std::string, Histogram> histograms;
   for (const tables::RunJson& cluster : run.list("machine.per_cluster")) {
     add_histogram({cluster.find("interconnect.waits"), run.file()}, histograms["interconnect"]);
@@ -260,7 +255,7 @@ tables::Table waits_table(const tables::RunJson& run) {
     double below = 0.0;
     for (const auto& [highest, count] : histograms[what]) {
       below += static_cast<double>(count);
-      table.add_row({std::string(what), highest, count, all > 0.0 ? below / all : 0.0});
+      table.add_row({what, highest, count, all > 0.0 ? below / all : 0.0});
     }
   }
   return table;
@@ -269,11 +264,11 @@ tables::Table waits_table(const tables::RunJson& run) {
 tables::Table nodes_table(const tables::RunJson& run) {
   tables::Table table(
       "run_nodes", "What each node does",
-      {{"node", tables::ColumnType::integer, "1", "its number"},
-       {"compute", tables::ColumnType::real, "fraction", "of the frame: computing, cache accesses, messages"},
-       {"memory", tables::ColumnType::real, "fraction", "transfers and bank accesses without queues"},
-       {"waits", tables::ColumnType::real, "fraction", "waiting for anything"},
-       {"idle", tables::ColumnType::real, "fraction", "nothing left to do"}});
+      {tables::count_column("node", "its number"),
+       tables::real_column("compute", "fraction", "of the frame: computing, cache accesses, messages"),
+       tables::real_column("memory", "fraction", "transfers and bank accesses without queues"),
+       tables::real_column("waits", "fraction", "waiting for anything"),
+       tables::real_column("idle", "fraction", "nothing left to do")});
   const double end = run.count("figures.machine.end");
   std::int64_t number = 0;
   for (const tables::RunJson& node : run.list("machine.per_node")) {
@@ -297,13 +292,13 @@ tables::Table nodes_table(const tables::RunJson& run) {
 
 // Of many nodes: groups of neighbours, with the mean, the least and the most of each part.
 tables::Table envelope_of(const tables::Table& nodes, std::size_t groups) {
-  tables::Table table(nodes.name(), nodes.title(),
-                      {{"node", tables::ColumnType::integer, "1", "first of the group"},
-                       {"last", tables::ColumnType::integer, "1", "last of the group"},
-                       {"what", tables::ColumnType::text, "", "part of the frame"},
-                       {"mean", tables::ColumnType::real, "fraction", "of the group's nodes"},
-                       {"least", tables::ColumnType::real, "fraction", "of any of them"},
-                       {"most", tables::ColumnType::real, "fraction", "of any of them"}});
+  tables::Table table(
+      nodes.name(), nodes.title(),
+      {tables::count_column("node", "first of the group"), tables::count_column("last", "last of the group"),
+       tables::text_column("what", "part of the frame"),
+       tables::real_column("mean", "fraction", "of the group's nodes"),
+       tables::real_column("least", "fraction", "of any of them"),
+       tables::real_column("most", "fraction", "of any of them")});
   const std::size_t count = nodes.rows().size();
   for (const tables::Column& column : nodes.columns().subspan(1)) {
     for (std::size_t group = 0; group < groups; ++group) {
@@ -320,8 +315,7 @@ tables::Table envelope_of(const tables::Table& nodes, std::size_t groups) {
       }
       // Rounding must not put the mean beside what it is the mean of.
       const double mean = std::clamp(sum / static_cast<double>(end - first), least, most);
-      table.add_row({static_cast<std::int64_t>(first), static_cast<std::int64_t>(end - 1), column.name, mean,
-                     least, most});
+      table.add_row({first, end - 1, column.name, mean, least, most});
     }
   }
   return table;

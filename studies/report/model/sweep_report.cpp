@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/cycle_groups.h"
@@ -40,10 +41,8 @@ std::vector<std::string> waits_of(const std::string& what) {
 }
 
 std::vector<SliceChart> charts_over_axis() {
-  std::vector<std::string> parts;
-  for (const std::string_view group : cycle_group_names) {
-    parts.push_back("part_" + std::string(group));
-  }
+  const std::vector<std::string> parts = sim::mapped(
+      cycle_group_names, [&](const std::string_view group) { return "part_" + std::string(group); });
   return {{"efficiency",
            "Efficiency",
            "Speed-up, divided by how many times the base's nodes a machine has; 100 % is the dashed line.",
@@ -162,13 +161,13 @@ void add_front(const ReportPoints& sweep, const std::string& figure, const std::
 tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
   tables::Table table(
       "front", "Machines that no other beats in price and frame time",
-      {{"ordinal", tables::ColumnType::integer, "1", "number of the point in the sweep, from 0"},
-       {"machine", tables::ColumnType::text, "", "its values"},
-       {"price", tables::ColumnType::real, "1", sweep.priced ? "cost by [prices]" : "number of nodes"},
-       {"frame_time", tables::ColumnType::real, "ms", "from its start until the last node is done"},
-       {"speed_up", tables::ColumnType::real, "1", "over the base machine"},
-       {"efficiency", tables::ColumnType::real, "fraction", "speed-up by the number of nodes"},
-       {"limit", tables::ColumnType::text, "", "what would help it, predicted (docs/sweep.md)"}});
+      {tables::count_column("ordinal", "number of the point in the sweep, from 0"),
+       tables::text_column("machine", "its values"),
+       tables::real_column("price", "1", sweep.priced ? "cost by [prices]" : "number of nodes"),
+       tables::real_column("frame_time", "ms", "from its start until the last node is done"),
+       tables::real_column("speed_up", "1", "over the base machine"),
+       tables::real_column("efficiency", "fraction", "speed-up by the number of nodes"),
+       tables::text_column("limit", "what would help it, predicted (docs/sweep.md)")});
   for (const std::size_t i : chosen.front) {
     const ReportPoint& point = sweep.points[i];
     const auto cell = [&](const char* name) {
@@ -181,23 +180,20 @@ tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
 }
 
 tables::Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
-  tables::Table table(
-      "model_error", "Error of the analytic model, measured by leaving exact points out",
-      {{"axis", tables::ColumnType::text, "", "key that the curve runs along"},
-       {"figure", tables::ColumnType::text, "", "what is modelled"},
-       {"zone", tables::ColumnType::text, "", "between exact points, or one step beyond them"},
-       {"points", tables::ColumnType::integer, "1", "points that were left out once"},
-       {"mean", tables::ColumnType::real, "fraction", "mean error"},
-       {"p95", tables::ColumnType::real, "fraction", "95th percentile, the band that is shown"}});
+  tables::Table table("model_error", "Error of the analytic model, measured by leaving exact points out",
+                      {tables::text_column("axis", "key that the curve runs along"),
+                       tables::text_column("figure", "what is modelled"),
+                       tables::text_column("zone", "between exact points, or one step beyond them"),
+                       tables::count_column("points", "points that were left out once"),
+                       tables::real_column("mean", "fraction", "mean error"),
+                       tables::real_column("p95", "fraction", "95th percentile, the band that is shown")});
   for (const AxisModel& model : models) {
     for (const Zone zone : {Zone::between, Zone::beyond}) {
       for (const auto& [figure, errors] :
            {std::pair("frame time", model.end), std::pair("speed-up", model.speed_up)}) {
         const ModelError& error = errors[static_cast<std::size_t>(zone)];
-        table.add_row({sweep.axes[model.axis].name, std::string(figure),
-                       std::string(zone == Zone::between ? "between" : "beyond"),
-                       static_cast<std::int64_t>(error.points),
-                       error.points > 0 ? tables::Cell(error.mean) : tables::Cell(),
+        table.add_row({sweep.axes[model.axis].name, figure, zone == Zone::between ? "between" : "beyond",
+                       error.points, error.points > 0 ? tables::Cell(error.mean) : tables::Cell(),
                        error.points > 0 ? tables::Cell(error.p95) : tables::Cell()});
       }
     }

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/host/signals_held.h"
 
 namespace marti::studies::report {
@@ -84,10 +85,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& added)
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  for (std::string& text : texts) {
-    result.push_back(text.data());
-  }
+  std::vector<char*> result = sim::mapped(texts, [&](std::string& text) { return text.data(); });
   result.push_back(nullptr);
   return result;
 }

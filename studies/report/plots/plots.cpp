@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/report/plots/child_process.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/tables/csv.h"
@@ -61,10 +62,9 @@ std::string drawing_program(const ReportData& report) {
     program += "\n";
   }
   program += report_chart_style_js().text;
-  Json charts = Json::array();
-  for (const ReportChart& chart : report.charts) {
-    charts.push_back({{"name", chart.name}, {"spec", chart.spec}, {"live", chart.live}});
-  }
+  const Json charts = sim::mapped(report.charts, [&](const ReportChart& chart) {
+    return Json{{"name", chart.name}, {"spec", chart.spec}, {"live", chart.live}};
+  });
   // Passed as a text to be parsed: in an object literal "__proto__" would set the prototype.
   const std::string text =
       Json{{"charts", charts}, {"about", chart_about(report)}, {"explorer", report.explorer}}.dump(

@@ -8,6 +8,7 @@
 
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/limits/stored_limits.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/sweep_answer.h"
@@ -258,10 +259,8 @@ ReportAxis make_axis(const AxisColumn& column) {
     axis.texts.push_back(sweep::axis_text(column.name, value));
   }
   if (axis.numeric) {
-    std::vector<double> numbers;
-    for (const tables::Cell& value : axis.values) {
-      numbers.push_back(*tables::number_of(value));
-    }
+    const std::vector<double> numbers =
+        sim::mapped(axis.values, [&](const tables::Cell& value) { return *tables::number_of(value); });
     const std::size_t last = numbers.size() - 1;
     axis.logarithmic = numbers.front() > 0.0 &&
                        (last < 2 || numbers[last] - numbers[last - 1] > 1.5 * (numbers[1] - numbers[0]));

@@ -37,14 +37,13 @@ void add_configuration(const tables::RunJson& run, ReportData& report) {
 }
 
 tables::Table plan_table(const tables::RunJson& run) {
-  tables::Table table(
-      "plan", "The plan: what the run left out",
-      {{"item", tables::ColumnType::text, "", "what could be left out"},
-       {"decision", tables::ColumnType::text, "", "left out, needed, kept or not applicable"},
-       {"class", tables::ColumnType::text, "", "proved before the frame, or decided ray by ray"},
-       {"fact", tables::ColumnType::text, "", "what the decision rests on"},
-       {"saved_operations", tables::ColumnType::integer, "1", "counted after the frame"},
-       {"unit", tables::ColumnType::text, "", "of saved_operations"}});
+  tables::Table table("plan", "The plan: what the run left out",
+                      {tables::text_column("item", "what could be left out"),
+                       tables::text_column("decision", "left out, needed, kept or not applicable"),
+                       tables::text_column("class", "proved before the frame, or decided ray by ray"),
+                       tables::text_column("fact", "what the decision rests on"),
+                       tables::count_column("saved_operations", "counted after the frame"),
+                       tables::text_column("unit", "of saved_operations")});
   for (const auto& [name, item] : run.at("plan").items()) {
     const tables::RunJson each = run.of(item);
     const bool saved = each.find("counted.operations").is_number_integer();
@@ -57,8 +56,8 @@ tables::Table plan_table(const tables::RunJson& run) {
 
 tables::Table figures_table(const tables::RunJson& run) {
   tables::Table table("figures", "Figures of the run",
-                      {{"figure", tables::ColumnType::text, "", "name in the catalogue (`marti figures`)"},
-                       {"value", tables::ColumnType::text, "", "times in ps"}});
+                      {tables::text_column("figure", "name in the catalogue (`marti figures`)"),
+                       tables::text_column("value", "times in ps")});
   for (const char* part : {"figures.frame", "figures.machine"}) {
     for (const auto& [name, value] : run.at(part).items()) {
       if (value.is_number() || value.is_string()) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/mapped.h"
 #include "studies/run/record/colour_scale.h"
 
 namespace marti::studies::run {
@@ -39,12 +40,9 @@ void HeatMap::missed(std::uint32_t /*node*/, std::int64_t misses, PixelPlace pix
 
 std::vector<float> HeatMap::figures(Heat heat) const {
   const double unit = heat == Heat::misses ? 1.0 : static_cast<double>(period_);
-  std::vector<float> figures;
-  figures.reserve(values(heat).size());
-  for (const std::int64_t value : values(heat)) {
-    figures.push_back(static_cast<float>(static_cast<double>(value) / unit));
-  }
-  return figures;
+  return sim::mapped(values(heat), [&](const std::int64_t value) {
+    return static_cast<float>(static_cast<double>(value) / unit);
+  });
 }
 
 Legend legend_of(const std::vector<float>& figures) {

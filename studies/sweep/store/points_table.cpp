@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/figures/best_offer.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/sweep/plan/axis_text.h"
@@ -60,7 +61,7 @@ tables::Column column_of(const std::string& name) {
       {"base", {"", "id of the machine that its speed-up is measured against"}},
       {"point", {"", "name in [sweep.points]"}},
       {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
-  tables::Column column{name, tables::ColumnType::real, axis_unit(name), "the key " + name};
+  tables::Column column = tables::real_column(name, axis_unit(name), "the key " + name);
   const auto describe = [&](const std::string& unit, const std::string& description) {
     column.unit = unit;
     column.description = description;
@@ -113,10 +114,9 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
   const figures::Better better = figure.better;
   std::vector<Row> rows = rows_of(reader, names);
   std::erase_if(rows, [](const Row& row) { return !tables::number_of(row.figures.back()); });
-  std::vector<figures::Offer> offers;
-  for (const Row& row : rows) {
-    offers.push_back({row.cost, *tables::number_of(row.figures.back())});
-  }
+  const std::vector<figures::Offer> offers = sim::mapped(rows, [&](const Row& row) {
+    return figures::Offer{row.cost, *tables::number_of(row.figures.back())};
+  });
   const std::optional<std::size_t> best = figures::best_within(offers, budget, better);
   if (offers.empty()) {
     throw sim::UserError(fmt::format("{}: no point has the figure {}", reader.file().string(), metric));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/sweep/store/store_schema.h"
 #include "studies/version.h"
 
@@ -70,10 +71,8 @@ class Settings {
   }
 
   std::int64_t section_of(const std::vector<sim::EffectiveValue>& values) {
-    std::vector<std::int64_t> members;
-    for (const sim::EffectiveValue& value : values) {
-      members.push_back(setting(value));
-    }
+    std::vector<std::int64_t> members =
+        sim::mapped(values, [&](const sim::EffectiveValue& value) { return setting(value); });
     std::sort(members.begin(), members.end());
     const auto [at, is_new] = sections_.try_emplace(members, next_section_);
     if (is_new) {
@@ -174,7 +173,7 @@ void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& pla
   for (const std::string& axis : plan.axes) {
     axes += (axes.empty() ? "" : ", ") + axis;
   }
-  insert.run({"version", std::string(version)});
+  insert.run({"version", version});
   insert.run({"axes", axes});
   insert.run({"points", std::to_string(plan.points.size())});
   insert.run({"filtered_out", std::to_string(plan.filtered_out)});

@@ -35,15 +35,7 @@ Counters counters_at(const tables::SqliteStatement& row, const std::vector<int>&
   return counters;
 }
 
-constexpr std::monostate no_checksum_yet;
-
-tables::Cell counter_cell(const std::optional<std::int64_t>& counter) {
-  tables::Cell cell;
-  if (counter) {
-    cell = *counter;
-  }
-  return cell;
-}
+const tables::Cell no_checksum_yet;
 
 // Whether the bounds of a bucket are those that a log-scaled histogram gives it.
 bool is_usual(const SweepHistogram::Bucket& bucket) {
@@ -68,7 +60,7 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
   sim::ensure(row.counters.size() == figures::counted_figures().size(),
               "a row has another number of counters");
   std::vector<tables::Cell> cells = {machine, no_checksum_yet};
-  std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
+  cells.insert(cells.end(), row.counters.begin(), row.counters.end());
   result_.run(cells);
   const auto names = sweep_histogram_names();
   for (const SweepHistogram& histogram : row.histograms) {
@@ -76,8 +68,7 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
     sim::ensure(name != names.end(), "a row has an unknown histogram");
     for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
       const auto highest = is_usual(bucket) ? std::nullopt : std::optional(bucket.highest);
-      bucket_.run(
-          {machine, std::int64_t{name - names.begin()}, bucket.lowest, counter_cell(highest), bucket.count});
+      bucket_.run({machine, name - names.begin(), bucket.lowest, highest, bucket.count});
     }
   }
   machine_sums_.seal(machine);
@@ -88,7 +79,7 @@ void RowWriter::add(std::int64_t frame, const FrameRow& row) {
               "a frame's row has another number of counters");
   std::vector<tables::Cell> cells = {frame,          row.scene,    row.scene_hash,
                                      row.image_hash, row.hit_hash, no_checksum_yet};
-  std::transform(row.counters.begin(), row.counters.end(), std::back_inserter(cells), counter_cell);
+  cells.insert(cells.end(), row.counters.begin(), row.counters.end());
   frame_.run(cells);
   std::int64_t ordinal = 0;
   for (const std::string& note : row.notes) {

@@ -190,12 +190,12 @@ void create_store(tables::SqliteConnection& connection) {
       counters_sql(run::frame_figures()) + ")");
   tables::SqliteStatement store(connection, tables::insert_sql("store", 2));
   store.run({"format", std::to_string(format)});
-  store.run({"version", std::string(version)});
-  store.run({"build", std::string(host::build_of_program())});
+  store.run({"version", version});
+  store.run({"build", host::build_of_program()});
   tables::SqliteStatement wait(connection, tables::insert_sql("waits", 2));
   std::int64_t number = 0;
   for (const std::string_view name : sweep_histogram_names()) {
-    wait.run({number++, std::string(name)});
+    wait.run({number++, name});
   }
   tables::SqliteStatement bucket(connection, tables::insert_sql("buckets", 2));
   const std::size_t last = sim::LogHistogram::bucket_of(INT64_MAX);

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "sim/error.h"
+#include "sim/mapped.h"
 #include "studies/sweep/store/store_schema.h"
 #include "studies/sweep/store/store_sums.h"
 #include "studies/tables/provenance.h"
@@ -58,7 +59,7 @@ void SweepStore::begin_log() {
 void SweepStore::begin_session() {
   session_ =
       connection_->value<std::int64_t>("SELECT COALESCE(MAX(id), 0) + 1 FROM host_sessions").value_or(1);
-  std::vector<tables::Cell> cells = {session_, now(), tables::Cell(), host_name(), std::int64_t{getpid()}};
+  std::vector<tables::Cell> cells = {session_, now(), tables::Cell(), host_name(), getpid()};
   const tables::Table host = tables::host_table();
   for (const char* what : {"processor", "system", "threads"}) {
     for (const std::vector<tables::Cell>& row : host.rows()) {
@@ -80,12 +81,7 @@ std::vector<bool> SweepStore::done(const std::string& query, const std::vector<s
   while (rows.next()) {
     there.insert(rows.integer(0));
   }
-  std::vector<bool> result;
-  result.reserve(ids.size());
-  for (const std::int64_t id : ids) {
-    result.push_back(there.contains(id));
-  }
-  return result;
+  return sim::mapped(ids, [&](const std::int64_t id) { return there.contains(id); });
 }
 
 void SweepStore::add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) {

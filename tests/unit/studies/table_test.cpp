@@ -37,8 +37,7 @@ TEST(Table, RefusesWhatDoesNotFit) {
   EXPECT_EQ(table.rows().size(), 1U);
   EXPECT_THROW(static_cast<void>(table.column("c")), sim::InternalError);
   EXPECT_THROW(static_cast<void>(table.at(1, "a")), sim::InternalError);
-  EXPECT_THROW(static_cast<void>(studies::tables::count_cell(std::numeric_limits<std::uint64_t>::max())),
-               sim::InternalError);
+  EXPECT_THROW(static_cast<void>(Cell(std::numeric_limits<std::uint64_t>::max())), sim::InternalError);
 }
 
 TEST(Table, ColumnsAreDescribed) {
