@@ -150,7 +150,7 @@ ErrorConfig read_error(sim::Config& config) {
   if (error.caches.empty()) {
     config.fail("error.cache_sizes", "must name a size");
   }
-  error.repeats = static_cast<std::uint32_t>(config.integer("error.repeats"));
+  error.repeats = keys::count(config, "error.repeats");
   error.seed = static_cast<std::uint64_t>(config.integer("error.seed"));
   config.refuse_unused();
   if (measures(ErrorFamily::simulator)) {

@@ -44,9 +44,9 @@ void declare_rendering_error_keys(sim::Schema& schema) {
 
 RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::FrameConfig& frame) {
   RenderingErrorOptions options;
-  options.side = static_cast<std::uint32_t>(config.integer("error.rendering.side"));
+  options.side = keys::count(config, "error.rendering.side");
   options.samples = keys::ascending<std::uint32_t>(config, "error.rendering.samples");
-  options.reference_samples = static_cast<std::uint32_t>(config.integer("error.rendering.reference_samples"));
+  options.reference_samples = keys::count(config, "error.rendering.reference_samples");
   if (options.samples.empty()) {
     config.fail("error.rendering.samples", "it is empty; give at least one number");
   }
@@ -56,7 +56,7 @@ RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::Fram
                     "error.rendering.samples, " + std::to_string(reference_factor * options.samples.back()));
   }
   options.depths = keys::ascending<std::uint32_t>(config, "error.rendering.depths");
-  options.reference_depth = static_cast<std::uint32_t>(config.integer("error.rendering.reference_depth"));
+  options.reference_depth = keys::count(config, "error.rendering.reference_depth");
   if (!options.depths.empty() && options.depths.back() >= options.reference_depth) {
     config.fail("error.rendering.depths", std::to_string(options.depths.back()) +
                                               " is not below error.rendering.reference_depth = " +
@@ -65,7 +65,7 @@ RenderingErrorOptions read_rendering_error(sim::Config& config, const keys::Fram
   options.weights = keys::ascending<double>(config, "error.rendering.weights");
   options.voxel_cuts = keys::ascending<double>(config, "error.rendering.voxel_cuts");
   options.seed = static_cast<std::uint64_t>(config.integer("error.rendering.seed"));
-  options.repeats = static_cast<std::uint32_t>(config.integer("error.rendering.repeats"));
+  options.repeats = keys::count(config, "error.rendering.repeats");
   if (frame.render.voxel_cut > 0.0) {
     config.fail("image.voxel_cut", "the study sets it itself, from error.rendering.voxel_cuts");
   }

@@ -6,8 +6,8 @@
 #include "processors/replay/host_bytes.h"
 #include "processors/replay/replay.h"
 #include "studies/frames/frame_ways.h"
-#include "studies/keys/build_keys.h"
 #include "studies/keys/machine_keys.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::frames {
 

@@ -1,10 +1,9 @@
-#include "studies/keys/build_keys.h"
-
 #include <string>
 
 #include "sim/parse_number.h"
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -49,8 +48,7 @@ void read_initial_tree(sim::Config& config, BuildConfig& build) {
 void declare_build_keys(sim::Schema& schema) {
   schema.section("build", "how the machine gets its tree");
   schema.choice(
-      "build.sharing", "given",
-      {processors::machine::sharing_names.begin(), processors::machine::sharing_names.end()},
+      "build.sharing", "given", names(processors::machine::sharing_names),
       "given: the whole tree is there and costs nothing; none: it is built before the frame, and paid; "
       "shared: an initial tree is built before the frame, and each node below it by the processor "
       "node that needs it first, while others wait; private: each processor node builds what it needs below "

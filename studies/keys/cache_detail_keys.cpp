@@ -1,5 +1,3 @@
-#include "studies/keys/cache_detail_keys.h"
-
 #include <limits>
 
 #include "processors/passes/working_set.h"
@@ -7,21 +5,20 @@
 #include "processors/walk/second_level.h"
 #include "sim/config_errors.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
 void declare_second_level_keys(sim::Schema& schema) {
   schema.section("l2", "a second level of caches; its line is the first level's");
-  schema.choice(
-      "l2.sharing", "none",
-      {processors::machine::second_level_names.begin(), processors::machine::second_level_names.end()},
-      "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
-      "before the "
-      "banks of its memory");
+  schema.choice("l2.sharing", "none", names(processors::machine::second_level_names),
+                "none; private: one behind the first-level cache of each node; shared: one for each cluster, "
+                "before the "
+                "banks of its memory");
   schema.size("l2.size", "256 KiB", {"1 B", "4 GiB"}, "size of each second-level cache");
   schema.integer("l2.ways", 8, {0, std::numeric_limits<std::int32_t>::max()}, "",
                  "lines of a set; 0: fully associative");
-  schema.choice("l2.replacement", "lru", {memory::replacement_names.begin(), memory::replacement_names.end()},
+  schema.choice("l2.replacement", "lru", names(memory::replacement_names),
                 "which line of a full set is replaced");
   schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
@@ -38,7 +35,7 @@ void read_second_level(sim::Config& config, processors::machine::MachineConfig& 
     return;
   }
   l2.cache.size = static_cast<std::uint64_t>(config.size("l2.size"));
-  l2.cache.ways = static_cast<std::uint32_t>(config.integer("l2.ways"));
+  l2.cache.ways = count(config, "l2.ways");
   l2.cache.replacement = config.choice_as<memory::Replacement>("l2.replacement");
   l2.hit_cycles = config.integer("l2.hit_cycles");
   if (l2.cache.replacement == memory::Replacement::random) {

@@ -1,5 +1,3 @@
-#include "studies/keys/combination_keys.h"
-
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -7,6 +5,8 @@
 
 #include "processors/machine/combinations.h"
 #include "sim/config_errors.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -43,7 +43,7 @@ std::vector<std::string_view> keys_of(Feature feature) {
 MachineConfig features_of(const sim::Config& given) {
   const sim::Config config = given;  // NOLINT(performance-unnecessary-copy-initialization)
   MachineConfig machine;
-  machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
+  machine.contexts = count(config, "node.contexts");
   machine.prefetch.next_line = config.boolean("prefetch.next_line");
   machine.prefetch.children = config.boolean("prefetch.children");
   machine.build.sharing = config.choice_as<processors::machine::Sharing>("build.sharing");

@@ -1,8 +1,7 @@
-#include "studies/keys/context_keys.h"
-
 #include <string>
 
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -26,7 +25,7 @@ void read_prefetch(sim::Config& config, processors::machine::MachineConfig& mach
                       "\": only an octree, a bsp tree or a bvh has branches with children");
     }
     if (prefetch.on()) {
-      prefetch.outstanding = static_cast<std::uint32_t>(config.integer("prefetch.outstanding"));
+      prefetch.outstanding = count(config, "prefetch.outstanding");
     }
     config.mark_unused_reason("prefetch.outstanding",
                               "nothing is prefetched without prefetch.next_line or prefetch.children",
@@ -56,7 +55,7 @@ void declare_prefetch_keys(sim::Schema& schema) {
 }
 
 void read_contexts(sim::Config& config, processors::machine::MachineConfig& machine) {
-  machine.contexts = static_cast<std::uint32_t>(config.integer("node.contexts"));
+  machine.contexts = count(config, "node.contexts");
   if (machine.contexts > 1) {
     machine.switch_cycles = config.integer("node.switch_cycles");
   }

@@ -1,5 +1,3 @@
-#include "studies/keys/dram_keys.h"
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -11,6 +9,7 @@
 #include "memory/dram_presets.h"
 #include "sim/error.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -152,7 +151,7 @@ void declare_dram_keys(sim::Schema& schema) {
 void read_memory(sim::Config& config, processors::machine::MachineConfig& machine) {
   if (config.choice_as<Model>("memory.model") == Model::fixed) {
     machine.banks.count = count(config, "memory.banks");
-    machine.banks.clock = sim::Clock::from_hertz(config.frequency("memory.clock"));
+    machine.banks.clock = clock(config, "memory.clock");
     machine.banks.access_cycles = config.integer("memory.access_cycles");
     machine.banks.busy_cycles = config.integer("memory.busy_cycles");
     config.mark_unused_reason("dram", "it has no effect without memory.model = \"dram\"", "memory.model");
@@ -163,7 +162,7 @@ void read_memory(sim::Config& config, processors::machine::MachineConfig& machin
   read_controller(config, dram);
   if (config.choice_as<processors::machine::SecondLevel>("l2.sharing") ==
       processors::machine::SecondLevel::shared) {
-    machine.banks.clock = sim::Clock::from_hertz(config.frequency("memory.clock"));  // of that cache
+    machine.banks.clock = clock(config, "memory.clock");  // of that cache
   }
   config.mark_unused_reason("dram.queue", "only dram.policy = \"frfcfs\" has a queue to choose from",
                             "dram.policy");

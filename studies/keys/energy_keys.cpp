@@ -1,5 +1,3 @@
-#include "studies/keys/energy_keys.h"
-
 #include <array>
 #include <optional>
 #include <string>
@@ -8,6 +6,7 @@
 #include "processors/energy/energy_presets.h"
 #include "processors/energy/energy_units.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 

@@ -1,5 +1,3 @@
-#include "studies/keys/flow_keys.h"
-
 #include <array>
 #include <string>
 #include <string_view>
@@ -7,6 +5,7 @@
 
 #include "sim/error.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -32,7 +31,7 @@ void read_stages(const sim::Config& config, PipelineConfig& pipeline, std::uint3
   const PipelineConfig shares = processors::machine::default_stages(nodes);
   std::size_t given = 0;
   for (const auto& [key, member] : stages) {
-    pipeline.*member = static_cast<std::uint32_t>(config.integer(key));
+    pipeline.*member = count(config, key);
     given += pipeline.*member != 0 ? 1 : 0;
   }
   if (given == 0) {
@@ -63,7 +62,7 @@ void read_pipeline(const sim::Config& config, processors::machine::MachineConfig
                 "pipeline.search + pipeline.nearest + pipeline.shade = " + std::to_string(sum) +
                     " must be machine.nodes = " + std::to_string(machine.nodes));
   }
-  pipeline.queue = static_cast<std::uint32_t>(config.integer("pipeline.queue"));
+  pipeline.queue = count(config, "pipeline.queue");
   const std::int64_t in_flight = config.integer("pipeline.in_flight");
   if (in_flight > processors::machine::most_in_flight(pipeline)) {
     config.fail("pipeline.in_flight", "more than " +

@@ -1,8 +1,5 @@
 #include "studies/keys/frame_keys.h"
 
-#include "sim/mapped.h"
-#include "sim/shown.h"
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -11,29 +8,27 @@
 #include <system_error>
 #include <vector>
 
+#include "sim/mapped.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/host/image_file.h"
+#include "studies/keys/key_parts.h"
 
 namespace marti::studies::keys {
 
 namespace {
 
-template <std::size_t N>
-std::vector<std::string> names_of(const std::array<std::string_view, N>& names) {
-  return {names.begin(), names.end()};
-}
-
 void read_tree_limits(const sim::Config& config, accel::StructureOptions& options) {
-  options.octree.max_objects = static_cast<std::uint32_t>(config.integer("structure.max_objects"));
-  options.octree.max_level = static_cast<std::uint32_t>(config.integer("structure.max_level"));
+  options.octree.max_objects = count(config, "structure.max_objects");
+  options.octree.max_level = count(config, "structure.max_level");
   options.bsp.max_objects = options.octree.max_objects;
   options.bsp.max_level = options.octree.max_level;
 }
 
 void read_bvh(const sim::Config& config, accel::BvhOptions& options) {
   options.node = config.choice_as<accel::BvhNodeKind>("structure.bvh_children");
-  options.max_objects = static_cast<std::uint32_t>(config.integer("structure.bvh_leaf"));
-  options.bins = static_cast<std::uint32_t>(config.integer("structure.bvh_bins"));
+  options.max_objects = count(config, "structure.bvh_leaf");
+  options.bins = count(config, "structure.bvh_bins");
   const std::uint32_t largest = accel::bvh_largest_leaf(options.node);
   if (options.max_objects > largest) {
     config.fail("structure.bvh_leaf", "must be at most " + std::to_string(largest) +
@@ -99,7 +94,7 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
   schema.choice(
-      "image.integrator", "whitted", names_of(processors::program::integrator_names),
+      "image.integrator", "whitted", names(processors::program::integrator_names),
       "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
       "scatter to each other, emissive triangles as lights, noise that more samples lessen");
   schema.integer("image.max_depth", 5, {1, processors::program::max_ray_depth}, "rays",
@@ -132,13 +127,13 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.real("structure.grid_density", 4.0, {0.001, 1000.0}, "cells",
               "grid: cells for each primitive, about");
   schema.choice(
-      "structure.grid_resolution", "density", names_of(accel::grid_match_names),
+      "structure.grid_resolution", "density", names(accel::grid_match_names),
       "grid: from the density; as many cells as an octree of the same max_objects and max_level has "
       "nodes, about; or cells as small as its smallest. At most 4 Mi cells");
-  schema.choice("structure.bsp_walk", "recursive", names_of(accel::bsp_walk_names),
+  schema.choice("structure.bsp_walk", "recursive", names(accel::bsp_walk_names),
                 "bsp: from the root down, or from leaf to leaf by a point pushed through their faces and "
                 "located from the root");
-  schema.choice("structure.bvh_children", "8", names_of(accel::bvh_node_names),
+  schema.choice("structure.bvh_children", "8", names(accel::bvh_node_names),
                 "bvh: most children of a node, whose record has 32 bytes for each; 8_quantised: eight in 80 "
                 "bytes");
   schema.integer("structure.bvh_leaf", 3, {1, accel::bvh_largest_leaf(accel::BvhNodeKind::two)}, "primitives",
@@ -197,21 +192,21 @@ FrameConfig read_frame(sim::Config& config) {
   frame.open.file.scene = config.text("scene.scene");
   frame.open.file.camera = config.text("scene.camera");
   frame.open.file.animation = config.text("scene.animation");
-  frame.frames.count = static_cast<std::uint32_t>(config.integer("frames.count"));
-  frame.frames.first = static_cast<std::uint32_t>(config.integer("frames.first"));
+  frame.frames.count = count(config, "frames.count");
+  frame.frames.first = count(config, "frames.first");
   frame.frames.rate = config.real("frames.rate");
   frame.open.file.time = frame.frames.time(0);
   config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
-  frame.render.width = static_cast<std::uint32_t>(config.integer("image.width"));
-  frame.render.height = static_cast<std::uint32_t>(config.integer("image.height"));
-  frame.render.max_depth = static_cast<std::uint32_t>(config.integer("image.max_depth"));
+  frame.render.width = count(config, "image.width");
+  frame.render.height = count(config, "image.height");
+  frame.render.max_depth = count(config, "image.max_depth");
   frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
   const bool path = frame.render.integrator == processors::program::Integrator::path;
   frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
   config.mark_unused_reason("image.min_weight",
                             "a path ends by chance, because rays cut off would darken the image",
                             "image.integrator");
-  frame.render.samples = static_cast<std::uint32_t>(config.integer("image.samples"));
+  frame.render.samples = count(config, "image.samples");
   if (frame.render.samples > 1 || path) {
     frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
   }

@@ -12,6 +12,7 @@
 #include "sim/config.h"
 #include "sim/schema.h"
 #include "sim/shown.h"
+#include "sim/time.h"
 
 namespace marti::studies::keys {
 
@@ -30,6 +31,11 @@ inline void cycles(sim::Schema& schema, std::string_view name, std::int64_t fall
 /// Declares a clock.
 inline void clock(sim::Schema& schema, std::string_view name, std::string_view meaning) {
   schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
+}
+
+/// The value of a clock.
+[[nodiscard]] inline sim::Clock clock(const sim::Config& config, std::string_view key) {
+  return sim::Clock::from_hertz(config.frequency(key));
 }
 
 /// The value of a key that counts something.

@@ -14,16 +14,8 @@
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
-#include "studies/keys/build_keys.h"
-#include "studies/keys/cache_detail_keys.h"
-#include "studies/keys/combination_keys.h"
-#include "studies/keys/context_keys.h"
-#include "studies/keys/dram_keys.h"
-#include "studies/keys/energy_keys.h"
-#include "studies/keys/flow_keys.h"
 #include "studies/keys/key_parts.h"
-#include "studies/keys/network_keys.h"
-#include "studies/keys/space_keys.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -198,10 +190,6 @@ std::uint32_t power_of_two(const sim::Config& config, std::string_view key) {
     config.fail(key, "must be a power of two, not " + std::to_string(bytes) + " bytes");
   }
   return static_cast<std::uint32_t>(bytes);
-}
-
-sim::Clock clock(const sim::Config& config, std::string_view key) {
-  return sim::Clock::from_hertz(config.frequency(key));
 }
 
 void read_costs(const sim::Config& config, processors::machine::MachineConfig& machine) {

@@ -1,9 +1,8 @@
-#include "studies/keys/network_keys.h"
-
 #include <string>
 #include <vector>
 
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -12,7 +11,7 @@ void declare_network_keys(sim::Schema& schema) {
       "network",
       "messages between the nodes of a cluster, for rays that move and for a distributed database");
   schema.choice(
-      "network.kind", "mesh", {memory::network_kind_names.begin(), memory::network_kind_names.end()},
+      "network.kind", "mesh", names(memory::network_kind_names),
       "ideal: fixed latency, no queue; bus: one message at a time; crossbar: a link into each node; mesh: a "
       "rectangle of routers; hypercube");
   schema.frequency("network.clock", "33 MHz", {"1 Hz", "1 THz"}, "clock of the network");
@@ -25,7 +24,7 @@ void declare_network_keys(sim::Schema& schema) {
 memory::NetworkConfig read_network(sim::Config& config) {
   memory::NetworkConfig network;
   network.kind = config.choice_as<memory::NetworkKind>("network.kind");
-  network.clock = sim::Clock::from_hertz(config.frequency("network.clock"));
+  network.clock = clock(config, "network.clock");
   network.hop_cycles = config.integer("network.hop_cycles");
   if (network.kind == memory::NetworkKind::ideal) {
     config.mark_unused_reason("network", "an ideal network has no links (network.kind = \"ideal\")",

@@ -1,9 +1,8 @@
-#include "studies/keys/space_keys.h"
-
 #include <cstdint>
 #include <string>
 
 #include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
@@ -12,8 +11,7 @@ using processors::machine::RegionPolicy;
 void declare_space_keys(sim::Schema& schema) {
   schema.section("space", "parts of the scene that nodes hold (machine.scheme = \"space\")");
   schema.choice(
-      "space.policy", "scatter",
-      {processors::machine::region_policy_names.begin(), processors::machine::region_policy_names.end()},
+      "space.policy", "scatter", names(processors::machine::region_policy_names),
       "which node holds which region; blocks: runs of neighbouring regions; scatter: region i is node i's "
       "modulo the nodes; balanced: equal numbers of primitives; sampled: equal work in a pre-pass "
       "over few pixels");

@@ -123,7 +123,7 @@ PaperConfig read_paper(sim::Config& config) {
   std::erase_if(paper.levels,
                 [&](std::uint32_t level) { return level >= paper.frame.structure_options.octree.max_level; });
   paper.rules = config.reals("paper.rules");
-  paper.host_repetitions = static_cast<std::uint32_t>(config.integer("paper.host_repetitions"));
+  paper.host_repetitions = keys::count(config, "paper.host_repetitions");
   config.refuse_unused();
   return paper;
 }

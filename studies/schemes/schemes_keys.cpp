@@ -127,8 +127,8 @@ SchemesConfig read_schemes(sim::Config& config) {
   schemes.frame = keys::read_one_frame(config);
   schemes.nodes = keys::ascending<std::uint32_t>(config, "schemes.nodes");
   schemes.cell_levels = keys::ascending<std::uint32_t>(config, "schemes.cell_levels");
-  schemes.cell_objects = static_cast<std::uint32_t>(config.integer("schemes.cell_objects"));
-  schemes.stage_nodes = static_cast<std::uint32_t>(config.integer("schemes.stage_nodes"));
+  schemes.cell_objects = keys::count(config, "schemes.cell_objects");
+  schemes.stage_nodes = keys::count(config, "schemes.stage_nodes");
   if (schemes.nodes.empty()) {
     config.fail("schemes.nodes", "must name a number of nodes");
   }

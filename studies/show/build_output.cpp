@@ -1,5 +1,3 @@
-#include "studies/show/build_output.h"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -8,15 +6,20 @@
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
 
-nlohmann::ordered_json build_json(const processors::node::BuildResult& build, bool per_node) {
+nlohmann::ordered_json build_json(const run::RunResult& r) {
+  const processors::node::BuildResult& build = r.timed.build;
+  if (build.sharing == processors::machine::Sharing::given) {
+    return nullptr;
+  }
   return {{"sharing", processors::machine::sharing_names[static_cast<std::size_t>(build.sharing)]},
           {"levels", counters_list(build.levels)},
-          {"per_node", counters_list(build.nodes, per_node)}};
+          {"per_node", counters_list(build.nodes)}};
 }
 
 std::string build_lines(const run::RunResult& r) {

@@ -1,11 +1,11 @@
-#include "studies/show/cache_output.h"
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -17,24 +17,18 @@ using processors::machine::SecondLevel;
 
 }  // namespace
 
-nlohmann::ordered_json second_level_json(const processors::machine::MachineConfig& machine,
-                                         const processors::replay::MachineResult& result, bool per_cache) {
-  Json object = {
-      {"sharing", processors::machine::second_level_names[static_cast<std::size_t>(machine.l2.sharing)]},
-      {"line", processors::machine::second_level_cache(machine).line}};
-  Json caches = nullptr;
-  if (per_cache) {
-    caches = Json::array();
-    for (std::size_t i = 0; i < result.l2.caches.size(); ++i) {
-      Json& cache = caches.emplace_back(Json::object());
-      add_counters(cache, result.l2.caches[i]);
-      if (i < result.l2.waits.size()) {
-        add_counters(cache, result.l2.waits[i], "wait_");
-      }
-    }
+nlohmann::ordered_json second_level_json(const run::RunResult& r) {
+  const SecondLevel sharing = r.machine.l2.sharing;
+  if (sharing == SecondLevel::none) {
+    return nullptr;
   }
-  object["per_cache"] = caches;
-  return object;
+  Json caches = counters_list(r.timed.l2.caches);
+  for (std::size_t i = 0; i < std::min(caches.size(), r.timed.l2.waits.size()); ++i) {
+    add_counters(caches[i], r.timed.l2.waits[i], "wait_");
+  }
+  return {{"sharing", processors::machine::second_level_names[static_cast<std::size_t>(sharing)]},
+          {"line", processors::machine::second_level_cache(r.machine).line},
+          {"per_cache", caches}};
 }
 
 std::string second_level_line(const run::RunResult& r) {

@@ -1,5 +1,3 @@
-#include "studies/show/context_output.h"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -8,13 +6,16 @@
 
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
 
-nlohmann::ordered_json context_json(const processors::machine::MachineConfig& machine,
-                                    const processors::walk::ContextResult& result, bool per_node) {
-  return {{"contexts", machine.contexts}, {"per_node", counters_list(result.nodes, per_node)}};
+nlohmann::ordered_json context_json(const run::RunResult& r) {
+  if (r.timed.contexts.nodes.empty()) {
+    return nullptr;
+  }
+  return {{"contexts", r.machine.contexts}, {"per_node", counters_list(r.timed.contexts.nodes)}};
 }
 
 std::string context_lines(const run::RunResult& r) {

@@ -1,5 +1,3 @@
-#include "studies/show/count_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "sim/mapped.h"
 #include "sim/statistics.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
@@ -21,7 +20,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using processors::walk::AttributionCounts;
 using processors::walk::AttributionRow;
-using processors::walk::CacheCountResult;
 
 std::string_view name_of(memory::RecordKind kind) {
   return memory::record_kind_names[static_cast<std::size_t>(kind)];
@@ -96,14 +94,16 @@ void class_lines(std::string& text, const run::RunResult& r) {
 
 }  // namespace
 
-nlohmann::ordered_json counts_json(const CacheCountResult& counts) {
+nlohmann::ordered_json counts_json(const run::RunResult& r) {
+  if (!r.machine.count.any()) {
+    return nullptr;
+  }
+  const processors::walk::CacheCountResult& counts = r.timed.counts;
   Json object = Json::object();
   if (counts.sharing) {
-    Json fetched = Json::array();
-    for (const auto& [nodes, lines] : counts.sharing->fetched) {
-      fetched.push_back({nodes, lines});
-    }
-    object["lines_by_nodes"] = fetched;
+    object["lines_by_nodes"] = sim::mapped(counts.sharing->fetched, [](const auto& entry) {
+      return Json{entry.first, entry.second};
+    });
   }
   if (counts.attribution) {
     Json rows = Json::array();

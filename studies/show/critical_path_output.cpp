@@ -1,5 +1,3 @@
-#include "studies/show/critical_path_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,8 @@
 #include "processors/flow/pipeline/stages.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
+#include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -59,9 +59,9 @@ std::string stages_line(const run::RunResult& result) {
 
 }  // namespace
 
-void add_critical_path(const run::RunResult& result, bool nodes, Json& machine) {
+nlohmann::ordered_json critical_path_json(const run::RunResult& result) {
   if (!result.critical_path) {
-    return;
+    return nullptr;
   }
   const CriticalPath& path = *result.critical_path;
   sim::ensure(std::reduce(path.time.begin(), path.time.end()) == result.timed.end &&
@@ -75,12 +75,12 @@ void add_critical_path(const run::RunResult& result, bool nodes, Json& machine) 
   const Json levels = sim::mapped(path.levels, [&](const processors::path::PathLevel& level) {
     return Json{{"traversal_ps", level.traversal}, {"reads_ps", level.reads}};
   });
-  machine["critical_path"] = {{"time_ps", time},
-                              {"nodes_ps", nodes ? Json(path.nodes) : Json(nullptr)},
-                              {"stages_ps", stages.empty() ? Json(nullptr) : Json(stages)},
-                              {"levels", levels},
-                              {"pieces", path.pieces},
-                              {"node_changes", path.node_changes}};
+  return {{"time_ps", time},
+          {"nodes_ps", path.nodes.size() <= most_listed ? Json(path.nodes) : Json(nullptr)},
+          {"stages_ps", stages.empty() ? Json(nullptr) : Json(stages)},
+          {"levels", levels},
+          {"pieces", path.pieces},
+          {"node_changes", path.node_changes}};
 }
 
 std::string critical_path_lines(const run::RunResult& result) {

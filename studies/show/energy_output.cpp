@@ -1,5 +1,3 @@
-#include "studies/show/energy_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {

@@ -1,5 +1,3 @@
-#include "studies/show/flow_output.h"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -10,6 +8,7 @@
 #include "sim/mapped.h"
 #include "studies/figures/flow_figures.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -19,7 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using processors::machine::MachineConfig;
 using processors::machine::Scheme;
-using processors::replay::MachineResult;
 
 Json load_json(const figures::StageLoad& load) {
   return {{"name", load.name},
@@ -59,18 +57,17 @@ void load_line(std::back_insert_iterator<std::string> out, const figures::StageL
 
 }  // namespace
 
-nlohmann::ordered_json flow_json(const MachineConfig& machine, const MachineResult& result, bool per_node) {
-  const figures::FlowFigures figures = figures::flow_figures(machine, result);
-  const processors::flow::FlowResult& flow = result.flow;
+nlohmann::ordered_json flow_json(const run::RunResult& r) {
+  if (r.machine.scheme == Scheme::image) {
+    return nullptr;
+  }
+  const figures::FlowFigures figures = figures::flow_figures(r.machine, r.timed);
+  const processors::flow::FlowResult& flow = r.timed.flow;
   const Json stages =
       sim::mapped(figures.stages, [&](const figures::StageLoad& stage) { return load_json(stage); });
-  Json nodes = nullptr;
-  if (per_node) {
-    nodes = Json::array();
-    for (std::size_t node = 0; node < flow.nodes.size(); ++node) {
-      nodes.push_back(counters_json(flow.nodes[node]));
-      nodes.back()["memory_bytes"] = flow.memory_bytes[node];
-    }
+  Json nodes = counters_list(flow.nodes);
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    nodes[node]["memory_bytes"] = flow.memory_bytes[node];
   }
   return {{"load", load_json(figures.all)},
           {"stages", stages},

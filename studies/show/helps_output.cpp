@@ -1,5 +1,3 @@
-#include "studies/show/helps_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -59,7 +58,11 @@ Json change_json(const helps::WhatHelps& what, const std::optional<helps::Measur
 
 }  // namespace
 
-Json helps_json(const helps::WhatHelps& what) {
+nlohmann::ordered_json helps_json(const run::RunResult& r) {
+  if (!r.helps) {
+    return nullptr;
+  }
+  const helps::WhatHelps& what = *r.helps;
   const Json resources = sim::mapped(what.helps, [&](const helps::Help& help) {
     return Json{{"resource", help.name},
                 {"step", change_json(what, help.step)},
@@ -74,7 +77,11 @@ Json helps_json(const helps::WhatHelps& what) {
   return {{"measured", what.measured}, {"sentence", what.sentence}, {"pair", pair}, {"resources", resources}};
 }
 
-std::string helps_lines(const helps::WhatHelps& what) {
+std::string helps_lines(const run::RunResult& r) {
+  if (!r.helps) {
+    return {};
+  }
+  const helps::WhatHelps& what = *r.helps;
   std::string text = fmt::format("\nwhat helps    {}\n", what.sentence);
   const auto out = std::back_inserter(text);
   if (!what.measured) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/mapped.h"
 #include "sim/statistics.h"
 
 namespace marti::studies::show {
@@ -38,14 +39,19 @@ template <class S>
   return object;
 }
 
-/// A list of such objects; null unless it is `wanted`.
+/// Beyond this many nodes, clusters, banks or caches their own figures are left out: sums remain.
+inline constexpr std::size_t most_listed = 4096;
+
+/// What `make` gives for each of them; null where there are too many.
+template <class List, class Make>
+[[nodiscard]] nlohmann::ordered_json list_json(const List& all, const Make& make) {
+  return all.size() > most_listed ? nlohmann::ordered_json() : nlohmann::ordered_json(sim::mapped(all, make));
+}
+
+/// The counters of each of them; null where there are too many.
 template <class List>
-[[nodiscard]] nlohmann::ordered_json counters_list(const List& all, bool wanted = true) {
-  nlohmann::ordered_json list = wanted ? nlohmann::ordered_json::array() : nlohmann::ordered_json();
-  for (std::size_t i = 0; wanted && i < all.size(); ++i) {
-    list.push_back(counters_json(all[i]));
-  }
-  return list;
+[[nodiscard]] nlohmann::ordered_json counters_list(const List& all) {
+  return list_json(all, [](const auto& each) { return counters_json(each); });
 }
 
 }  // namespace marti::studies::show

@@ -4,21 +4,14 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/plan/plan_output.h"
-#include "studies/show/build_output.h"
-#include "studies/show/cache_output.h"
-#include "studies/show/context_output.h"
-#include "studies/show/count_output.h"
-#include "studies/show/critical_path_output.h"
-#include "studies/show/flow_output.h"
-#include "studies/show/helps_output.h"
 #include "studies/show/json_parts.h"
-#include "studies/show/scaling_output.h"
-#include "studies/show/working_set_output.h"
+#include "studies/show/result_parts.h"
 #include "studies/tables/json_table.h"
 #include "studies/version.h"
 
@@ -29,8 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int schema_version = 4;
-// Beyond this many nodes or clusters their own figures are left out: sums remain.
-constexpr std::size_t most_listed = 4096;
 
 Json hash(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
@@ -130,50 +121,34 @@ Json wait_json(const memory::WaitStatistics& w) {
   return object;
 }
 
-Json clusters_json(const processors::replay::MachineResult& result) {
-  if (result.clusters.size() > most_listed) {
-    return nullptr;
+Json cluster_json(const processors::replay::ClusterResult& cluster) {
+  Json interconnect = counters_json(cluster.interconnect);
+  interconnect["waits"] = wait_json(cluster.interconnect.waits);
+  Json json = {{"interconnect", interconnect},
+               {"banks", list_json(cluster.banks, [](const memory::BankStatistics& bank) {
+                  Json object = counters_json(bank);
+                  object["waits"] = wait_json(bank.waits);
+                  return object;
+                })}};
+  if (!cluster.dram.empty() && cluster.dram.size() <= most_listed) {
+    json["dram"] = counters_list(cluster.dram);
   }
-  Json clusters = Json::array();
-  for (const processors::replay::ClusterResult& cluster : result.clusters) {
-    Json interconnect = counters_json(cluster.interconnect);
-    interconnect["waits"] = wait_json(cluster.interconnect.waits);
-    Json banks = nullptr;
-    if (cluster.banks.size() <= most_listed) {
-      banks = Json::array();
-      for (const memory::BankStatistics& bank : cluster.banks) {
-        banks.push_back(counters_json(bank));
-        banks.back()["waits"] = wait_json(bank.waits);
-      }
-    }
-    clusters.push_back({{"interconnect", interconnect}, {"banks", banks}});
-    if (!cluster.dram.empty() && cluster.dram.size() <= most_listed) {
-      clusters.back()["dram"] = counters_list(cluster.dram);
-    }
-    if (cluster.distributed) {
-      Json network = counters_json(cluster.distributed->network);
-      network["waits"] = wait_json(cluster.distributed->network.waits);
-      clusters.back()["distributed"] = counters_json(cluster.distributed->accesses);
-      clusters.back()["distributed"]["network"] = network;
-    }
+  if (cluster.distributed) {
+    Json network = counters_json(cluster.distributed->network);
+    network["waits"] = wait_json(cluster.distributed->network.waits);
+    json["distributed"] = counters_json(cluster.distributed->accesses);
+    json["distributed"]["network"] = network;
   }
-  return clusters;
+  return json;
 }
 
-Json nodes_json(const processors::replay::MachineResult& result) {
-  if (result.nodes.size() > most_listed) {
-    return nullptr;
-  }
-  Json nodes = Json::array();
-  for (const processors::cost::NodeStatistics& node : result.nodes) {
-    Json object = counters_json(node);
-    object["hits"] = node.references.all_hits();
-    object["misses"] = node.references.all_misses();
-    object["steps"] = counters_json(node.steps);
-    object["time_ps"] = named(processors::cost::activity_names, node.time);
-    nodes.push_back(object);
-  }
-  return nodes;
+Json node_json(const processors::cost::NodeStatistics& node) {
+  Json object = counters_json(node);
+  object["hits"] = node.references.all_hits();
+  object["misses"] = node.references.all_misses();
+  object["steps"] = counters_json(node.steps);
+  object["time_ps"] = named(processors::cost::activity_names, node.time);
+  return object;
 }
 
 // What the colours of each map stand for.
@@ -205,27 +180,22 @@ std::string json_of(const run::RunResult& r, const std::map<std::string, std::st
                   {"node_clock_period_ps", r.machine.clock.period()},
                   {"one_node_time_ps", r.one_node.end},
                   {"bounds", bounds_json(r)},
-                  {"what_helps", r.helps ? helps_json(*r.helps) : Json(nullptr)},
-                  {"per_cluster", clusters_json(timed)},
-                  {"per_node", nodes_json(timed)}};
-  if (timed.build.sharing != processors::machine::Sharing::given) {
-    machine["build"] = build_json(timed.build, timed.nodes.size() <= most_listed);
-  }
-  if (r.machine.scheme != processors::machine::Scheme::image) {
-    machine["flow"] = flow_json(r.machine, timed, timed.nodes.size() <= most_listed);
-  }
-  if (r.machine.l2.sharing != processors::machine::SecondLevel::none) {
-    machine["l2"] = second_level_json(r.machine, timed, timed.l2.caches.size() <= most_listed);
-  }
-  if (r.machine.count.any()) {
-    machine["counts"] = counts_json(timed.counts);
-  }
-  if (r.working_set) {
-    machine["working_set"] = working_set_json(*r.working_set);
-  }
-  add_critical_path(r, timed.nodes.size() <= most_listed, machine);
-  if (!timed.contexts.nodes.empty()) {
-    machine["contexts"] = context_json(r.machine, timed.contexts, timed.nodes.size() <= most_listed);
+                  {"what_helps", helps_json(r)},
+                  {"per_cluster", list_json(timed.clusters, cluster_json)},
+                  {"per_node", list_json(timed.nodes, node_json)}};
+  // Parts that only some runs have.
+  const std::pair<const char*, Json (*)(const run::RunResult&)> parts[] = {
+      {"build", build_json},
+      {"flow", flow_json},
+      {"l2", second_level_json},
+      {"counts", counts_json},
+      {"working_set", working_set_json},
+      {"critical_path", critical_path_json},
+      {"contexts", context_json}};
+  for (const auto& [name, json_of_part] : parts) {
+    if (Json part = json_of_part(r); !part.is_null()) {
+      machine[name] = std::move(part);
+    }
   }
   Json result = {{"marti", {{"version", version}, {"schema", schema_version}}},
                  {"config", keys::config_json(r.config_name, r.values)},

@@ -1,10 +1,9 @@
-#include "studies/show/scaling_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "studies/show/result_parts.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {

@@ -9,17 +9,8 @@
 #include "sim/statistics.h"
 #include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
-#include "studies/show/build_output.h"
-#include "studies/show/cache_output.h"
-#include "studies/show/context_output.h"
-#include "studies/show/count_output.h"
-#include "studies/show/critical_path_output.h"
-#include "studies/show/energy_output.h"
-#include "studies/show/flow_output.h"
-#include "studies/show/helps_output.h"
-#include "studies/show/scaling_output.h"
+#include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"
-#include "studies/show/working_set_output.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
@@ -262,19 +253,9 @@ std::string summary_of(const run::RunResult& r) {
   text += loss_lines(r);
   time_lines(out, r);
   memory_lines(out, r);
-  text += energy_lines(r);
-  text += counts_lines(r);
-  if (r.working_set) {
-    text += working_set_lines(*r.working_set);
-  }
-  text += critical_path_lines(r);
-  text += context_lines(r);
-  text += build_lines(r);
-  text += flow_lines(r);
-  text += bound_lines(r);
-  text += record_lines(r);
-  if (r.helps) {
-    text += helps_lines(*r.helps);
+  for (const auto& lines : {energy_lines, counts_lines, working_set_lines, critical_path_lines, context_lines,
+                            build_lines, flow_lines, bound_lines, record_lines, helps_lines}) {
+    text += lines(r);
   }
   return text;
 }

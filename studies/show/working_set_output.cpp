@@ -1,5 +1,3 @@
-#include "studies/show/working_set_output.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 
 #include "sim/mapped.h"
 #include "sim/statistics.h"
+#include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
@@ -119,7 +118,11 @@ void cache_lines(std::string& text, const WorkingSet& set, std::size_t number) {
 
 }  // namespace
 
-nlohmann::ordered_json working_set_json(const WorkingSet& set) {
+nlohmann::ordered_json working_set_json(const run::RunResult& r) {
+  if (!r.working_set) {
+    return nullptr;
+  }
+  const WorkingSet& set = *r.working_set;
   const auto pair_json = [](const Point& point) { return Json{point.size, point.misses}; };
   Json caches = Json::array();
   for (std::size_t i = 0; i < set.caches.size(); ++i) {
@@ -138,7 +141,11 @@ nlohmann::ordered_json working_set_json(const WorkingSet& set) {
   return {{"line", set.line}, {"any_cache", set.any_cache}, {"caches", caches}};
 }
 
-std::string working_set_lines(const WorkingSet& set) {
+std::string working_set_lines(const run::RunResult& r) {
+  if (!r.working_set) {
+    return {};
+  }
+  const WorkingSet& set = *r.working_set;
   std::string text = fmt::format(
       "\nworking set   first-level LRU caches of every size, lines of {} bytes; exact {}\n", set.line,
       set.any_cache ? "for machines with any of them"

@@ -27,8 +27,8 @@ sim::Schema stability_schema() {
 
 StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCase> all) {
   StabilityConfig stability;
-  stability.size.rays = static_cast<std::uint32_t>(config.integer("stability.rays"));
-  stability.size.nodes = static_cast<std::uint32_t>(config.integer("stability.nodes"));
+  stability.size.rays = keys::count(config, "stability.rays");
+  stability.size.nodes = keys::count(config, "stability.nodes");
   const std::vector<std::string> only = config.texts("stability.only");
   config.refuse_unused();
   std::vector<std::string> names;
