@@ -70,8 +70,8 @@ class Measurement {
       return std::move(what_);
     }
     measure_steps();
-    std::stable_sort(cases_.begin(), cases_.end(),
-                     [&](const Case& a, const Case& b) { return worth(a.help) > worth(b.help); });
+    std::ranges::stable_sort(cases_,
+                             [&](const Case& a, const Case& b) { return worth(a.help) > worth(b.help); });
     take_helps();
     const std::size_t named = best_helps(what_).size();
     measure_best(named);
@@ -116,9 +116,10 @@ class Measurement {
     return measured;
   }
 
-  // Whether there is room for the replay, and work left beyond `kept` for one that is like the machine's own.
-  bool can_begin(const Replay& replay, Work kept, Work& begun) {
-    if (!has_room(shared_, *replay.machine)) {
+  // Whether there is room for a replay of so many bytes, and work left beyond `kept` for one that is like the
+  // machine's own.
+  bool can_begin(const Replay& replay, std::uint64_t bytes, Work kept, Work& begun) {
+    if (bytes > shared_.memory.left()) {
       replay.into->outcome = Outcome::memory;
       return false;
     }
@@ -133,15 +134,18 @@ class Measurement {
 
   void replay(const std::vector<Replay>& wanted, Work kept = 0) {
     Work begun = 0;
+    std::uint64_t most_bytes = 0;
     std::vector<const processors::machine::MachineConfig*> machines;
     std::vector<MeasuredChange*> changes;
     for (const Replay& one : wanted) {
-      if (can_begin(one, kept, begun)) {
+      const std::uint64_t bytes = bytes_of(shared_, *one.machine);
+      if (can_begin(one, bytes, kept, begun)) {
+        most_bytes = std::max(most_bytes, bytes);
         machines.push_back(one.machine);
         changes.push_back(one.into);
       }
     }
-    const std::vector<Replayed> replayed = replay_all(shared_, machines);
+    const std::vector<Replayed> replayed = replay_all(shared_, machines, most_bytes);
     for (std::size_t i = 0; i < replayed.size(); ++i) {
       MeasuredChange& change = *changes[i];
       change.end = replayed[i].end;
@@ -174,7 +178,7 @@ class Measurement {
             {&change->machine, &into, share, {one.help.part, one.help.name.starts_with("packets.")}});
       }
     }
-    std::stable_sort(wanted.begin(), wanted.end(), [&](const Replay& a, const Replay& b) {
+    std::ranges::stable_sort(wanted, [&](const Replay& a, const Replay& b) {
       return in_turns_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
                        : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
     });
@@ -183,8 +187,7 @@ class Measurement {
       for (Replay& one : wanted) {
         one.turn = turns[one.part]++;
       }
-      std::stable_sort(wanted.begin(), wanted.end(),
-                       [](const Replay& a, const Replay& b) { return a.turn < b.turn; });
+      std::ranges::stable_sort(wanted, {}, &Replay::turn);
     }
     return wanted;
   }
@@ -196,7 +199,7 @@ class Measurement {
     if (prices_ || saved.size() < most_named) {
       return worth_naming;
     }
-    std::sort(saved.begin(), saved.end(), std::greater<>());
+    std::ranges::sort(saved, std::greater<>());
     return std::max(worth_naming, saved[most_named - 1]);
   }
 
@@ -244,13 +247,12 @@ class Measurement {
         sorted.push_back(&one);
       }
     }
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Case* a, const Case* b) {
-      return saved_by(a->help.best) > saved_by(b->help.best);
-    });
+    std::ranges::stable_sort(
+        sorted, [](const Case* a, const Case* b) { return saved_by(a->help.best) > saved_by(b->help.best); });
     std::vector<const Case*> best;
     for (const Case* const one : sorted) {
-      const bool first = std::none_of(best.begin(), best.end(),
-                                      [&](const Case* other) { return other->help.part == one->help.part; });
+      const bool first =
+          std::ranges::none_of(best, [&](const Case* other) { return other->help.part == one->help.part; });
       if (first && best.size() < most_in_pairs) {
         best.push_back(one);
       }

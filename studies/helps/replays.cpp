@@ -42,7 +42,8 @@ Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
   }
 }
 
-// Bytes of the host's memory for a replay. A machine that cannot be built is refused by its replay.
+}  // namespace
+
 std::uint64_t bytes_of(const SharedLog& shared, const MachineConfig& machine) {
   const MachineConfig timed = without_counting(machine);
   try {
@@ -52,24 +53,15 @@ std::uint64_t bytes_of(const SharedLog& shared, const MachineConfig& machine) {
   }
 }
 
-}  // namespace
-
 const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& machine) {
   const StrippedLog* const stripped = shared.stripped.get();
   return stripped != nullptr && stripped->suits(without_counting(machine)) ? stripped : nullptr;
 }
 
-bool has_room(const SharedLog& shared, const MachineConfig& machine) {
-  return bytes_of(shared, machine) <= shared.memory.left();
-}
-
-std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines) {
-  std::uint64_t largest = 1;
-  for (const MachineConfig* const machine : machines) {
-    largest = std::max(largest, bytes_of(shared, *machine));
-  }
+std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines,
+                                 std::uint64_t most_bytes) {
   const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
-  const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / largest, 1, cores);
+  const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / std::max<std::uint64_t>(1, most_bytes), 1, cores);
   std::vector<Replayed> replayed(machines.size());
   tbb::task_arena arena(static_cast<int>(at_a_time));
   arena.execute([&] {

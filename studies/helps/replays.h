@@ -27,8 +27,9 @@ struct SharedLog {
 [[nodiscard]] const processors::walk::StrippedLog* stripped_for(
     const SharedLog& shared, const processors::machine::MachineConfig& machine);
 
-/// Whether simulating the machine takes no more memory than is left.
-[[nodiscard]] bool has_room(const SharedLog& shared, const processors::machine::MachineConfig& machine);
+/// Bytes of the host's memory for a replay. A machine that cannot be built is refused by its replay.
+[[nodiscard]] std::uint64_t bytes_of(const SharedLog& shared,
+                                     const processors::machine::MachineConfig& machine);
 
 struct Replayed {
   std::optional<sim::Ticks> end;  ///< std::nullopt: the replay was not finished
@@ -36,9 +37,10 @@ struct Replayed {
   Work work = 0;
 };
 
-/// Replays each machine, all of which have room. As many are replayed at a time as there are cores and memory
-/// for; results do not depend on it. Throws sim::Stopped.
+/// Replays each machine, none of which takes more than `most_bytes`. As many are replayed at a time as there
+/// are cores and memory for; results do not depend on it. Throws sim::Stopped.
 [[nodiscard]] std::vector<Replayed> replay_all(
-    const SharedLog& shared, std::span<const processors::machine::MachineConfig* const> machines);
+    const SharedLog& shared, std::span<const processors::machine::MachineConfig* const> machines,
+    std::uint64_t most_bytes);
 
 }  // namespace marti::studies::helps

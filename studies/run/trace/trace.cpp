@@ -69,7 +69,7 @@ Count write_trace(const processors::passes::ReferenceTrace& trace, std::uint32_t
     at = std::to_chars(at, line.data() + 20, reference.address, 16).ptr;
     *at++ = ' ';
     const std::string_view kind = memory::record_kind_names[static_cast<std::size_t>(reference.kind)];
-    at = std::copy(kind.begin(), kind.end(), at);
+    at = std::ranges::copy(kind, at).out;
     *at++ = '\n';
     const auto length = static_cast<std::size_t>(at - line.data());
     ++(reference.write ? count.writes : count.reads);
@@ -88,21 +88,18 @@ std::string describe(const std::filesystem::path& file, const Count& count) {
                      static_cast<double>(count.bytes) / (1024.0 * 1024.0));
 }
 
+std::string file_name(std::uint32_t node) { return fmt::format("node-{:05}.din", node); }
+
 // Removes the files of an earlier trace of a machine with more nodes.
 void remove_beyond(const std::filesystem::path& directory, std::uint32_t nodes) {
-  constexpr std::string_view begin = "node-";
-  constexpr std::string_view end = ".din";
   std::vector<std::filesystem::path> older;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(directory, error);
        !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with(begin) && name.ends_with(end)) {
-      const std::string_view digits =
-          std::string_view(name).substr(begin.size(), name.size() - begin.size() - end.size());
-      if (sim::parse_number<std::uint32_t>(digits).value_or(0) >= nodes) {
-        older.push_back(entry->path());
-      }
+    const std::string stem = entry->path().stem().string();
+    const auto node = sim::parse_number<std::uint32_t>(std::string_view(stem).substr(stem.find('-') + 1));
+    if (node && *node >= nodes && entry->path().filename() == file_name(*node)) {
+      older.push_back(entry->path());
     }
   }
   for (const std::filesystem::path& file : older) {
@@ -133,7 +130,7 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   std::uint64_t left = options.most_bytes;
   std::vector<std::unique_ptr<TextStream>> files;
   for (const std::uint32_t node : nodes) {
-    const std::filesystem::path file = directory / fmt::format("node-{:05}.din", node);
+    const std::filesystem::path file = directory / file_name(node);
     files.push_back(std::make_unique<TextStream>(file));
     try {
       const Count count = write_trace(trace, node, left, *files.back());
