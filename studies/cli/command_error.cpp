@@ -111,7 +111,7 @@ std::vector<std::string> leftover(const CLI::App& app, std::span<const std::stri
   const std::vector<std::string> found = app.remaining(true);
   std::vector<std::string> ordered;
   for (const std::string& word : words) {
-    if (std::find(found.begin(), found.end(), word) != found.end()) {
+    if (std::ranges::find(found, word) != found.end()) {
       ordered.push_back(word);
     }
   }

@@ -17,18 +17,18 @@ SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists) {
   for (const auto& [name, differences] : by_name) {
     const Difference& first = *differences.front();
     const bool alike = differences.size() == lists.size() &&
-                       std::all_of(differences.begin(), differences.end(), [&first](const Difference* other) {
+                       std::ranges::all_of(differences, [&first](const Difference* other) {
                          return other->a == first.a && other->b == first.b;
                        });
-    const auto both = std::find_if(differences.begin(), differences.end(), [](const Difference* difference) {
+    const auto both = std::ranges::find_if(differences, [](const Difference* difference) {
       return difference->a != tables::Cell() && difference->b != tables::Cell();
     });
     (alike ? found.alike : found.varied).push_back(both == differences.end() ? first : **both);
   }
   for (std::vector<Difference>* list : lists) {
     std::erase_if(*list, [&found](const Difference& difference) {
-      return std::any_of(found.alike.begin(), found.alike.end(),
-                         [&](const Difference& alike) { return alike.name == difference.name; });
+      return std::ranges::any_of(found.alike,
+                                 [&](const Difference& alike) { return alike.name == difference.name; });
     });
   }
   return found;

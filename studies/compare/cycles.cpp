@@ -62,7 +62,7 @@ std::vector<ActivityTime> activity_times(const ComparedResult& a, const Compared
     time.change = mean(time.b, nodes_b) - mean(time.a, nodes_a);
     times.push_back(time);
   }
-  std::stable_sort(times.begin(), times.end(), [](const ActivityTime& x, const ActivityTime& y) {
+  std::ranges::stable_sort(times, [](const ActivityTime& x, const ActivityTime& y) {
     return std::abs(x.change) > std::abs(y.change);
   });
   return times;

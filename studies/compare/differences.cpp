@@ -32,7 +32,7 @@ void merge(const Map& a, const Map& b, const Visit& visit) {
 
 // As Differences::numbers is sorted.
 void sort_by_size(std::vector<Difference>& numbers) {
-  std::stable_sort(numbers.begin(), numbers.end(), [](const Difference& a, const Difference& b) {
+  std::ranges::stable_sort(numbers, [](const Difference& a, const Difference& b) {
     const double first = a.relative().value_or(0.0);
     const double second = b.relative().value_or(0.0);
     return first != second ? first > second : a.name < b.name;

@@ -43,8 +43,7 @@ ComparedResult compared(const tables::RunJson& run, const std::string& name) {
 const figures::FigureEntry* entry_of(std::string_view name) {
   constexpr std::string_view of_frame = "frame.";
   const auto found = [](std::span<const figures::FigureEntry> entries, std::string_view wanted) {
-    const auto at = std::find_if(entries.begin(), entries.end(),
-                                 [&](const figures::FigureEntry& entry) { return entry.name == wanted; });
+    const auto at = std::ranges::find(entries, wanted, &figures::FigureEntry::name);
     return at == entries.end() ? nullptr : &*at;
   };
   if (name.starts_with(of_frame)) {

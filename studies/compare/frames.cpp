@@ -16,8 +16,8 @@ bool has_hashes(const ComparedResult& result) {
 // The settings of the frame, in order.
 std::vector<std::pair<std::string, std::string>> settings_of_frame(const ComparedResult& result) {
   std::vector<std::pair<std::string, std::string>> settings;
-  std::copy_if(result.settings.begin(), result.settings.end(), std::back_inserter(settings),
-               [](const auto& setting) { return is_frame_setting(setting.first); });
+  std::ranges::copy_if(result.settings, std::back_inserter(settings),
+                       [](const auto& setting) { return is_frame_setting(setting.first); });
   return settings;
 }
 
@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, std::string>> settings_of_frame(const Compare
 
 bool is_frame_setting(std::string_view key) {
   constexpr std::array<std::string_view, 4> sections = {"scene", "frames", "image", "structure"};
-  return std::find(sections.begin(), sections.end(), key.substr(0, key.find('.'))) != sections.end();
+  return std::ranges::find(sections, key.substr(0, key.find('.'))) != sections.end();
 }
 
 bool same_frame(const ComparedResult& a, const ComparedResult& b) {
@@ -40,14 +40,13 @@ bool same_frame(const ComparedResult& a, const ComparedResult& b) {
   };
   // Images and hits of two scenes can be equal where they differ in what no ray meets.
   return (a.scene_hash.empty() || b.scene_hash.empty() || a.scene_hash == b.scene_hash) &&
-         std::all_of(identity.begin(), identity.end(),
-                     [&](const char* name) { return value(a, name) == value(b, name); });
+         std::ranges::all_of(identity, [&](const char* name) { return value(a, name) == value(b, name); });
 }
 
 std::vector<Difference> frame_settings(const std::vector<Difference>& settings) {
   std::vector<Difference> found;
-  std::copy_if(settings.begin(), settings.end(), std::back_inserter(found),
-               [](const Difference& setting) { return is_frame_setting(setting.name); });
+  std::ranges::copy_if(settings, std::back_inserter(found),
+                       [](const Difference& setting) { return is_frame_setting(setting.name); });
   return found;
 }
 

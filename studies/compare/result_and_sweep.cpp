@@ -41,7 +41,7 @@ void measure(ComparedPoint& point) {
 
 // The name of a point where the sweep has named ones.
 std::string name_of(const sweep::SweepReader& sweep, const sweep::StoredPoint& point) {
-  const auto axis = std::find(sweep.axes().begin(), sweep.axes().end(), "point");
+  const auto axis = std::ranges::find(sweep.axes(), "point");
   const auto index = static_cast<std::size_t>(axis - sweep.axes().begin());
   const auto* name = index < point.values.size() ? std::get_if<std::string>(&point.values[index]) : nullptr;
   return name == nullptr ? std::string() : *name;
@@ -103,10 +103,9 @@ void take_points(std::vector<Candidate> candidates, ResultAndSweep& found) {
     }
   }
   const bool by_time = found.same_frame;
-  std::stable_sort(found.points.begin(), found.points.end(),
-                   [by_time](const ComparedPoint& x, const ComparedPoint& y) {
-                     return by_time ? x.end < y.end : is_nearer(x, y);
-                   });
+  std::ranges::stable_sort(found.points, [by_time](const ComparedPoint& x, const ComparedPoint& y) {
+    return by_time ? x.end < y.end : is_nearer(x, y);
+  });
 }
 
 }  // namespace
@@ -115,9 +114,7 @@ bool is_nearer(const ComparedPoint& x, const ComparedPoint& y) {
   return std::tie(x.distance, x.doublings, x.ordinal) < std::tie(y.distance, y.doublings, y.ordinal);
 }
 
-const ComparedPoint& ResultAndSweep::nearest() const {
-  return *std::min_element(points.begin(), points.end(), is_nearer);
-}
+const ComparedPoint& ResultAndSweep::nearest() const { return *std::ranges::min_element(points, is_nearer); }
 
 ResultAndSweep result_and_sweep(const ComparedResult& result, const std::filesystem::path& file,
                                 SweepSide side) {
@@ -140,9 +137,9 @@ ResultAndSweep result_and_sweep(const ComparedResult& result, const std::filesys
   found.alike = std::move(shared.alike);
   found.varied = std::move(shared.varied);
   const auto differ = [&own](const std::vector<Difference>& differences) {
-    return static_cast<std::size_t>(std::count_if(
-        differences.begin(), differences.end(),
-        [&own](const Difference& difference) { return own.settings.contains(difference.name); }));
+    return static_cast<std::size_t>(std::ranges::count_if(differences, [&own](const Difference& difference) {
+      return own.settings.contains(difference.name);
+    }));
   };
   found.equal_settings = own.settings.size() - differ(found.alike) - differ(found.varied);
   return found;

@@ -48,7 +48,7 @@ std::map<std::string, std::string> settings_of(const sweep::SweepReader& reader,
 // "point" has one value of such an axis) may change from sweep to sweep.
 std::vector<std::string> telling_axes(const Sweep& sweep) {
   const std::vector<std::string>& axes = sweep.reader.axes();
-  const auto named = std::find(axes.begin(), axes.end(), "point");
+  const auto named = std::ranges::find(axes, "point");
   if (named == axes.end()) {
     return axes;
   }
@@ -60,7 +60,7 @@ std::vector<std::string> telling_axes(const Sweep& sweep) {
       values[typed(point.values[at])].insert(typed(point.values[i]));
     }
     const bool follows =
-        std::all_of(values.begin(), values.end(), [](const auto& value) { return value.second.size() == 1; });
+        std::ranges::all_of(values, [](const auto& value) { return value.second.size() == 1; });
     if (i != at && !follows) {
       telling.push_back(axes[i]);
     }
@@ -72,7 +72,7 @@ std::string axes_key(const Sweep& sweep, const sweep::StoredPoint& point,
                      const std::vector<std::string>& axes) {
   std::string key;
   for (const std::string& axis : axes) {
-    const auto at = std::find(sweep.reader.axes().begin(), sweep.reader.axes().end(), axis);
+    const auto at = std::ranges::find(sweep.reader.axes(), axis);
     const tables::Cell& value = point.values.at(static_cast<std::size_t>(at - sweep.reader.axes().begin()));
     key += axis + "=" + typed(value) + "\n";
   }
@@ -150,8 +150,8 @@ void enter_counters(const Differences& differences, const JoinedPoint& point,
       counter.b = point.b;
     }
   };
-  std::for_each(differences.numbers.begin(), differences.numbers.end(), enter);
-  std::for_each(differences.one_side.begin(), differences.one_side.end(), enter);
+  std::ranges::for_each(differences.numbers, enter);
+  std::ranges::for_each(differences.one_side, enter);
 }
 
 // Sums over the joined points.
@@ -175,7 +175,7 @@ std::vector<MeanChange> mean_changes(const Sums& sums) {
   for (const auto& [activity, sum] : sums.times) {
     means.push_back({activity, sum / static_cast<double>(sums.timed)});
   }
-  std::stable_sort(means.begin(), means.end(), [](const MeanChange& x, const MeanChange& y) {
+  std::ranges::stable_sort(means, [](const MeanChange& x, const MeanChange& y) {
     return std::abs(x.of_frame) > std::abs(y.of_frame);
   });
   return means;
@@ -215,7 +215,7 @@ void join(const Sweep& a, const Sweep& b, const sweep::StoredPoint& from, const 
 double size_of(const JoinedPoint& point) { return std::abs(std::log(point.ratio())); }
 
 void sort_points(TwoSweeps& found) {
-  std::stable_sort(found.points.begin(), found.points.end(), [](const JoinedPoint& x, const JoinedPoint& y) {
+  std::ranges::stable_sort(found.points, [](const JoinedPoint& x, const JoinedPoint& y) {
     if (x.same_frame != y.same_frame) {
       return x.same_frame;
     }
@@ -243,8 +243,7 @@ void take_settings(TwoSweeps& found) {
 }  // namespace
 
 std::size_t TwoSweeps::comparable() const {
-  return static_cast<std::size_t>(
-      std::count_if(points.begin(), points.end(), [](const JoinedPoint& point) { return point.same_frame; }));
+  return static_cast<std::size_t>(std::ranges::count(points, true, &JoinedPoint::same_frame));
 }
 
 TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem::path& file_b) {
@@ -259,16 +258,16 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   // An axis that tells points apart in one of them is compared in both.
   std::vector<std::string> axes = telling_axes(a);
   for (const std::string& axis : telling_axes(b)) {
-    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) {
+    if (std::ranges::find(axes, axis) == axes.end()) {
       axes.push_back(axis);
     }
   }
   const auto has = [](const Sweep& sweep, const std::string& axis) {
     const std::vector<std::string>& there = sweep.reader.axes();
-    return std::find(there.begin(), there.end(), axis) != there.end();
+    return std::ranges::find(there, axis) != there.end();
   };
-  found.by_axes = std::all_of(axes.begin(), axes.end(),
-                              [&](const std::string& axis) { return has(a, axis) && has(b, axis); });
+  found.by_axes =
+      std::ranges::all_of(axes, [&](const std::string& axis) { return has(a, axis) && has(b, axis); });
   const Index from = index_of(a, found.by_axes ? &axes : nullptr);
   const Index to = index_of(b, found.by_axes ? &axes : nullptr);
   Sums sums;
@@ -288,8 +287,8 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
       found.only_b.push_back(point->ordinal);
     }
   }
-  std::sort(found.only_a.begin(), found.only_a.end());
-  std::sort(found.only_b.begin(), found.only_b.end());
+  std::ranges::sort(found.only_a);
+  std::ranges::sort(found.only_b);
   sort_points(found);
   take_settings(found);
   found.counters = figures::counted_figures().size();
@@ -297,7 +296,7 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   for (auto& [name, counter] : sums.counters) {
     found.differing.push_back(std::move(counter));
   }
-  std::stable_sort(found.differing.begin(), found.differing.end(), [](const auto& x, const auto& y) {
+  std::ranges::stable_sort(found.differing, [](const auto& x, const auto& y) {
     return x.largest.relative().value_or(2.0) > y.largest.relative().value_or(2.0);
   });
   return found;

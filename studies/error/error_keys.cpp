@@ -118,9 +118,9 @@ ErrorConfig read_error(sim::Config& config) {
   ErrorConfig error;
   error.frame = keys::read_one_frame(config);
   for (const sim::Value& name : config.values("error.families")) {
-    const auto at = std::find(family_names.begin(), family_names.end(), std::get<std::string>(name));
+    const auto at = std::ranges::find(family_names, std::get<std::string>(name));
     const auto family = static_cast<ErrorFamily>(at - family_names.begin());
-    if (std::find(error.families.begin(), error.families.end(), family) == error.families.end()) {
+    if (std::ranges::find(error.families, family) == error.families.end()) {
       error.families.push_back(family);
     }
   }
@@ -128,7 +128,7 @@ ErrorConfig read_error(sim::Config& config) {
     config.fail("error.families", "must name a family");
   }
   const auto measures = [&](ErrorFamily family) {
-    return std::find(error.families.begin(), error.families.end(), family) != error.families.end();
+    return std::ranges::find(error.families, family) != error.families.end();
   };
   if (measures(ErrorFamily::rendering)) {
     error.rendering = read_rendering_error(config, error.frame);

@@ -55,7 +55,7 @@ class Measurement {
     std::iota(order.begin(), order.end(), std::size_t{0});
     sim::begin_part(frame_.meter, "measuring run times", "renderings", order.size() * options_.repeats);
     for (std::uint32_t repeat = 0; repeat < options_.repeats; ++repeat) {
-      std::shuffle(order.begin(), order.end(), random);
+      std::ranges::shuffle(order, random);
       for (const std::size_t point : order) {
         time(study_.points[point], repeat);
         sim::count_step(frame_.meter);

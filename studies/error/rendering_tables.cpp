@@ -26,8 +26,8 @@ std::vector<std::size_t> points_of(const RenderingStudy& study, Knob knob) {
 // The setting that a knob's errors are measured against: its reference, or else the one of most samples.
 std::size_t dearest_of(const RenderingStudy& study, Knob knob) {
   const std::vector<std::size_t> points = points_of(study, knob);
-  const auto reference = std::find_if(
-      points.begin(), points.end(), [&](std::size_t point) { return study.points[point].setting.reference; });
+  const auto reference =
+      std::ranges::find_if(points, [&](std::size_t point) { return study.points[point].setting.reference; });
   return reference != points.end() ? *reference : points.back();
 }
 

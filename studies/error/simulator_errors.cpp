@@ -133,7 +133,7 @@ std::vector<MethodErrors> errors_of(const SimulatorStudy& study) {
   for (std::size_t method = 0; method < all.size(); ++method) {
     const std::vector<std::optional<estimate::Estimate>>& estimates = study.estimates[method];
     MethodErrors& errors = all[method];
-    errors.any = std::any_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.has_value(); });
+    errors.any = std::ranges::any_of(estimates, [](const auto& e) { return e.has_value(); });
     if (!errors.any) {
       continue;
     }

@@ -237,8 +237,7 @@ tables::Table time_table(const SimulatorStudy& study, std::span<const MethodErro
                      time.low, time.high, time.confidence,
                      exact > 0.0 ? tables::Cell(time.median / exact) : tables::Cell(),
                      interpolated ? tables::Cell() : work.events, interpolated ? tables::Cell() : work.words,
-                     summary.mean_abs, std::abs(summary.worst),
-                     std::find(front.begin(), front.end(), p) != front.end()});
+                     summary.mean_abs, std::abs(summary.worst), std::ranges::find(front, p) != front.end()});
     }
   }
   return table;

@@ -36,9 +36,8 @@ std::optional<double> kendall_tau(std::span<const double> a, std::span<const dou
 
 double regret(std::span<const double> truth, std::span<const double> estimate) {
   sim::ensure(!truth.empty() && truth.size() == estimate.size(), "a choice among no machines");
-  const auto chosen =
-      static_cast<std::size_t>(std::min_element(estimate.begin(), estimate.end()) - estimate.begin());
-  return truth[chosen] / *std::min_element(truth.begin(), truth.end()) - 1.0;
+  const auto chosen = static_cast<std::size_t>(std::ranges::min_element(estimate) - estimate.begin());
+  return truth[chosen] / *std::ranges::min_element(truth) - 1.0;
 }
 
 ErrorSummary summarise(std::span<const double> errors) {
@@ -60,7 +59,7 @@ ErrorSummary summarise(std::span<const double> errors) {
 
 double upper_quantile(std::vector<double> values, double confidence) {
   sim::ensure(!values.empty(), "a quantile of no values");
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto rank = static_cast<std::size_t>(std::ceil(confidence * static_cast<double>(values.size() + 1)));
   return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
 }
@@ -83,7 +82,7 @@ double student_95(std::uint64_t degrees) {
 
 MedianInterval median_interval(std::vector<double> values) {
   sim::ensure(!values.empty(), "a median of no values");
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const std::size_t half = values.size() / 2;
   const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
   return {median, values.front(), values.back(),

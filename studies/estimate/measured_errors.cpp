@@ -74,13 +74,13 @@ std::size_t whole_number_of(std::string_view text) {
 }  // namespace
 
 std::size_t load_class_of(double use) {
-  const auto* const found = std::lower_bound(load_classes.begin(), load_classes.end(), use);
+  const auto* const found = std::ranges::lower_bound(load_classes, use);
   return std::min<std::size_t>(static_cast<std::size_t>(found - load_classes.begin()),
                                load_classes.size() - 1);
 }
 
 std::size_t size_class_of(std::uint64_t windows) {
-  const auto* const above = std::upper_bound(sample_sizes.begin(), sample_sizes.end(), windows);
+  const auto* const above = std::ranges::upper_bound(sample_sizes, windows);
   sim::ensure(above != sample_sizes.begin(), "no errors are known of so few windows");
   return static_cast<std::size_t>(above - sample_sizes.begin()) - 1;
 }

@@ -46,14 +46,14 @@ std::vector<Stratum> draw_strata(std::uint64_t units, std::uint64_t count, std::
     std::partial_sort(all.begin(), drawn, all.end(),
                       [&](std::uint64_t a, std::uint64_t b) { return rank(a) < rank(b); });
     stratum.chosen.assign(all.begin(), drawn);
-    std::sort(stratum.chosen.begin(), stratum.chosen.end());
+    std::ranges::sort(stratum.chosen);
   }
   return strata;
 }
 
 bool all_chosen(std::span<const Stratum> strata) {
-  return std::all_of(strata.begin(), strata.end(),
-                     [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
+  return std::ranges::all_of(strata,
+                             [](const Stratum& stratum) { return stratum.chosen.size() == stratum.size(); });
 }
 
 PacketWindows::PacketWindows(const processors::machine::PacketList& packets, std::uint64_t length,

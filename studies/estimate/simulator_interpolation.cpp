@@ -36,7 +36,7 @@ double end_slope(double a, double b, double p, double q) {
 double interpolate(Curve curve, std::span<const double> xs, std::span<const double> ys, double x) {
   sim::ensure(xs.size() >= 2 && xs.size() == ys.size(), "a curve needs two points");
   const std::size_t pieces = xs.size() - 1;
-  const auto above = static_cast<std::size_t>(std::upper_bound(xs.begin(), xs.end(), x) - xs.begin());
+  const auto above = static_cast<std::size_t>(std::ranges::upper_bound(xs, x) - xs.begin());
   const std::size_t piece = std::clamp<std::size_t>(above, 1, pieces) - 1;
   const auto length = [&](std::size_t i) { return xs[i + 1] - xs[i]; };
   const auto slope = [&](std::size_t i) { return (ys[i + 1] - ys[i]) / length(i); };
@@ -74,11 +74,11 @@ Estimate estimate_between(Curve curve, std::span<const double> xs, std::span<con
     const auto figure = static_cast<Figure>(i);
     std::vector<double> ys =
         sim::mapped(machines, [&](const MachineFigures& machine) { return machine[figure]; });
-    const auto known = std::find(xs.begin(), xs.end(), x);
+    const auto known = std::ranges::find(xs, x);
     if (known != xs.end()) {
       estimate.value[figure] = ys[static_cast<std::size_t>(known - xs.begin())];
-    } else if (std::all_of(ys.begin(), ys.end(), [](double y) { return y > 0.0; })) {
-      std::transform(ys.begin(), ys.end(), ys.begin(), [](double y) { return std::log(y); });
+    } else if (std::ranges::all_of(ys, [](double y) { return y > 0.0; })) {
+      std::ranges::transform(ys, ys.begin(), [](double y) { return std::log(y); });
       estimate.value[figure] = std::exp(interpolate(curve, log_xs, ys, std::log(x)));
     } else {
       estimate.value[figure] = interpolate(Curve::linear, log_xs, ys, std::log(x));

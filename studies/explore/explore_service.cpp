@@ -90,7 +90,7 @@ bool ExploreService::is_own(const HttpHead& head) const {
   // At port 80 clients leave the port out.
   const std::string port = port_ == 80 ? "" : fmt::format(":{}", port_);
   const std::array<std::string, 2> hosts = {"127.0.0.1" + port, "localhost" + port};
-  return head.hosts.size() == 1 && std::find(hosts.begin(), hosts.end(), head.hosts[0]) != hosts.end() &&
+  return head.hosts.size() == 1 && std::ranges::find(hosts, head.hosts[0]) != hosts.end() &&
          (head.origins.empty() || (head.origins.size() == 1 && head.origins[0] == "http://" + head.hosts[0]));
 }
 
@@ -145,7 +145,7 @@ std::optional<HttpResponse> ExploreService::answer_head(const HttpHead& head) {
     return file(*name).value_or(nothing(404));
   }
   constexpr std::array<std::string_view, 5> posts = {"time", "helps", "model", "report", "end"};
-  if (head.method != "POST" || std::find(posts.begin(), posts.end(), *name) == posts.end()) {
+  if (head.method != "POST" || std::ranges::find(posts, *name) == posts.end()) {
     return nothing(404);
   }
   if (!is_json(head)) {

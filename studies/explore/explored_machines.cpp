@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 7> shown_figures = {
     "end", "nodes", "speed_up", "efficiency", "hit_ratio", "interconnect_utilisation", "bank_utilisation"};
 
 std::string name_of(Settings settings) {
-  std::sort(settings.begin(), settings.end());
+  std::ranges::sort(settings);
   std::string name;
   for (const auto& [key, value] : settings) {
     name += (name.empty() ? "" : ", ") + key + " = " + value;
@@ -30,8 +30,8 @@ void ExploredMachines::add(const Settings& settings, const run::RunResult& resul
     machine.figures.push_back(result.figure(figure));
   }
   const std::lock_guard lock(mutex_);
-  const bool known = std::any_of(machines_.begin(), machines_.end(),
-                                 [&](const Machine& other) { return other.name == machine.name; });
+  const bool known =
+      std::ranges::any_of(machines_, [&](const Machine& other) { return other.name == machine.name; });
   if (!known && machines_.size() < most) {
     machines_.push_back(std::move(machine));
   }

@@ -111,7 +111,7 @@ std::optional<std::string> key_of(const std::string& message, const sim::Schema&
 
 bool is_control(const sim::Key& key) {
   const std::string_view section = std::string_view(key.name).substr(0, key.name.find('.'));
-  return std::find(no_controls.begin(), no_controls.end(), section) == no_controls.end();
+  return std::ranges::find(no_controls, section) == no_controls.end();
 }
 
 Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments,

@@ -13,9 +13,8 @@ namespace {
 bool is_better(double a, double b, Better better) { return better == Better::higher ? a > b : a < b; }
 
 void check(std::span<const Offer> offers) {
-  const bool numbers = std::none_of(offers.begin(), offers.end(), [](const Offer& offer) {
-    return std::isnan(offer.cost) || std::isnan(offer.metric);
-  });
+  const bool numbers = std::ranges::none_of(
+      offers, [](const Offer& offer) { return std::isnan(offer.cost) || std::isnan(offer.metric); });
   sim::ensure(numbers, "an offer's cost or metric is no number");
 }
 
@@ -41,7 +40,7 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better bett
   check(offers);
   std::vector<std::size_t> order(offers.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     return offers[a].cost != offers[b].cost ? offers[a].cost < offers[b].cost
                                             : is_better(offers[a].metric, offers[b].metric, better);
   });

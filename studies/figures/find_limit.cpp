@@ -63,8 +63,7 @@ Limit find_limit(const processors::machine::MachineConfig& machine,
        part({Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
              Activity::cache_access, Activity::switching, Activity::messaging})},
   }};
-  const auto* const largest = std::max_element(
-      candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto* const largest = std::ranges::max_element(candidates, {}, &std::pair<Limit, double>::second);
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());
   const double flow = waits.slowest + waits.queues + waits.messages;
   if (machine.scheme != processors::machine::Scheme::image && flow >= notable_share * all) {

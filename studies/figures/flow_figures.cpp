@@ -43,8 +43,7 @@ const StageLoad& FlowFigures::slowest() const {
   if (stages.empty()) {
     return all;
   }
-  return *std::max_element(stages.begin(), stages.end(),
-                           [](const StageLoad& a, const StageLoad& b) { return a.busy < b.busy; });
+  return *std::ranges::max_element(stages, {}, &StageLoad::busy);
 }
 
 namespace {

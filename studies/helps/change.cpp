@@ -40,8 +40,8 @@ std::optional<Change> Changer::both(const Change& a, const Change& b) const {
   keys.insert(keys.end(), b.keys.begin(), b.keys.end());
   std::vector<sim::Setting> settings = a.settings;
   for (const sim::Setting& setting : b.settings) {
-    if (std::any_of(a.settings.begin(), a.settings.end(),
-                    [&](const sim::Setting& other) { return other.key == setting.key; })) {
+    if (std::ranges::any_of(a.settings,
+                            [&](const sim::Setting& other) { return other.key == setting.key; })) {
       return std::nullopt;
     }
     settings.push_back(setting);
@@ -50,7 +50,7 @@ std::optional<Change> Changer::both(const Change& a, const Change& b) const {
 }
 
 std::optional<Change> Changer::made(std::vector<KeyChange> keys, std::vector<sim::Setting> settings) const {
-  if (std::all_of(keys.begin(), keys.end(), [](const KeyChange& key) { return key.from == key.to; })) {
+  if (std::ranges::all_of(keys, [](const KeyChange& key) { return key.from == key.to; })) {
     return std::nullopt;
   }
   sim::Config config = config_.with(settings);

@@ -152,10 +152,10 @@ FrameFacts facts_of(const MachineResult& result) {
   facts.database_bytes = result.database_bytes;
   facts.writes_waited =
       result.time()[static_cast<std::size_t>(processors::cost::Activity::queue_full_wait)] > 0;
-  facts.waited_for_banks = std::any_of(
-      result.clusters.begin(), result.clusters.end(), [](const processors::replay::ClusterResult& cluster) {
-        return std::any_of(cluster.banks.begin(), cluster.banks.end(),
-                           [](const memory::BankStatistics& bank) { return bank.waits.sum > 0; });
+  facts.waited_for_banks =
+      std::ranges::any_of(result.clusters, [](const processors::replay::ClusterResult& cluster) {
+        return std::ranges::any_of(cluster.banks,
+                                   [](const memory::BankStatistics& bank) { return bank.waits.sum > 0; });
       });
   return facts;
 }

@@ -17,7 +17,7 @@ double price(const Help& help) { return help.step ? help.step->price.value_or(0.
 
 // Whether a step only divides the program's work in another way, so that no part of the machine changes.
 bool is_of_program(const MeasuredChange& step) {
-  return std::all_of(step.keys.begin(), step.keys.end(), [](const KeyChange& change) {
+  return std::ranges::all_of(step.keys, [](const KeyChange& change) {
     return change.key.starts_with("packets.") || change.key.starts_with("build.") ||
            change.key == "space.level";
   });

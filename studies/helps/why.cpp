@@ -57,8 +57,7 @@ std::string more_than_computing(const figures::Counts& counts) {
       {share(counts, {Activity::queue_full_wait}), "waiting for room"},
       {share(counts, {Activity::lock_wait}), "waiting for parts of the tree"},
       {on_memory(counts), "on memory"}};
-  const auto* const most = std::max_element(waits.begin(), waits.end(),
-                                            [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto* const most = std::ranges::max_element(waits, {}, &std::pair<double, std::string_view>::first);
   return most->first > computing(counts) ? fmt::format(", {:.1f} % {}", 100.0 * most->first, most->second)
                                          : std::string();
 }

@@ -112,7 +112,7 @@ class OpenImageIO final : public ImageCodec {
       throw sim::UserError("the texture " + texture.name + " cannot be encoded as PNG");
     }
     std::vector<std::byte> result(bytes.size());
-    std::transform(bytes.begin(), bytes.end(), result.begin(), [](unsigned char b) { return std::byte{b}; });
+    std::ranges::transform(bytes, result.begin(), [](unsigned char b) { return std::byte{b}; });
     return result;
   }
 };

@@ -59,7 +59,7 @@ std::uint8_t srgb_byte(float linear) {
 void load_image_library() { static_cast<void>(codec()); }
 
 std::string note_of_infinities(const processors::program::Image& image) {
-  const auto count = std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec3& pixel) {
+  const auto count = std::ranges::count_if(image.pixels, [](const glm::vec3& pixel) {
     return !std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z);
   });
   return count == 0 ? ""

@@ -26,7 +26,7 @@ std::vector<std::string> names_in(const fs::path& directory, bool directories) {
       names.push_back(at->path().filename().string());
     }
   }
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 

@@ -51,7 +51,7 @@ std::vector<T> ascending(const sim::Config& config, std::string_view key) {
     const auto* const whole = std::get_if<std::int64_t>(&value);
     numbers.push_back(whole != nullptr ? static_cast<T>(*whole) : static_cast<T>(std::get<double>(value)));
   }
-  std::sort(numbers.begin(), numbers.end());
+  std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }

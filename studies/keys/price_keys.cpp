@@ -61,9 +61,9 @@ Prices read_prices(const sim::Config& config) {
 }
 
 std::optional<Prices> read_given_prices(const sim::Config& config) {
-  const bool given = !config.free_section("prices").empty() ||
-                     std::any_of(price_keys.begin(), price_keys.end(),
-                                 [&](const PriceKey& key) { return config.given(key.name); });
+  const bool given =
+      !config.free_section("prices").empty() ||
+      std::ranges::any_of(price_keys, [&](const PriceKey& key) { return config.given(key.name); });
   return given ? std::optional(read_prices(config)) : std::nullopt;
 }
 

@@ -42,8 +42,7 @@ std::vector<CacheMisses> StepPredictor::known_misses() const {
           std::abs(std::log(cache.sets / here.sets)) + std::abs(std::log(cache.ways / here.ways)), cache);
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(found, {}, &std::pair<double, CacheMisses>::first);
   std::vector<CacheMisses> known;
   for (std::size_t i = 0; i < std::min(found.size(), most_fitted); ++i) {
     known.push_back(found[i].second);

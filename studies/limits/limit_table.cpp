@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -20,8 +21,7 @@ namespace {
 // "limits        node.clock of 612 points, machine.nodes of 388"
 std::string limits_line(const std::map<std::string, std::size_t>& count, std::size_t open) {
   std::vector<std::pair<std::string, std::size_t>> names(count.begin(), count.end());
-  std::stable_sort(names.begin(), names.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::ranges::stable_sort(names, std::greater{}, &std::pair<std::string, std::size_t>::second);
   std::string text;
   for (const auto& [name, points] : names) {
     text += fmt::format("{}{} of {}", text.empty() ? "limits        " : ", ", name,

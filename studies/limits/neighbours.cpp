@@ -27,7 +27,7 @@ std::size_t Neighbours::place_of(Axis& axis, const sim::Config& config) const {
   sim::ensure(index.has_value(), "an axis is not declared");
   const std::span<const sim::Value> values = config.values_at(*index);
   std::string text = sim::print_values(config.schema().keys()[*index], values);
-  const auto found = std::find(axis.texts.begin(), axis.texts.end(), text);
+  const auto found = std::ranges::find(axis.texts, text);
   const auto place = static_cast<std::size_t>(found - axis.texts.begin());
   if (found == axis.texts.end()) {
     axis.texts.push_back(std::move(text));
@@ -37,8 +37,7 @@ std::size_t Neighbours::place_of(Axis& axis, const sim::Config& config) const {
 }
 
 std::optional<std::size_t> Neighbours::axis_of(std::string_view key) const {
-  const auto found =
-      std::find_if(axes_.begin(), axes_.end(), [&](const Axis& axis) { return axis.key == key; });
+  const auto found = std::ranges::find(axes_, key, &Axis::key);
   return found == axes_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - axes_.begin()));
 }
 
@@ -51,7 +50,7 @@ std::optional<std::size_t> Neighbours::changed(std::size_t point,
       return std::nullopt;
     }
     const std::vector<std::string>& texts = axes_[*axis].texts;
-    place[*axis] = static_cast<std::size_t>(std::find(texts.begin(), texts.end(), change.to) - texts.begin());
+    place[*axis] = static_cast<std::size_t>(std::ranges::find(texts, change.to) - texts.begin());
   }
   const auto found = points_.find(place);
   return found == points_.end() ? std::nullopt : std::optional(found->second);

@@ -23,7 +23,7 @@ bool is_modelled(std::string_view name) {
       "memory.clock",         "memory.banks",       "interconnect.latency_cycles",
       "memory.access_cycles", "memory.busy_cycles", "host.latency_cycles",
       "host.occupancy_cycles"};
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 // Whether misses of other caches follow from those of the neighbours.

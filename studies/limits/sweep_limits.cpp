@@ -97,8 +97,8 @@ PointLimit SweepLimits::at(std::size_t point) const {
   const auto order = [](const PredictedStep& step) {
     return step.basis == LimitBasis::unknown ? std::pair(-1, 0.0) : helps::worth(step.saved, step.price);
   };
-  std::stable_sort(limit.steps.begin(), limit.steps.end(),
-                   [&](const PredictedStep& a, const PredictedStep& b) { return order(a) > order(b); });
+  std::ranges::stable_sort(
+      limit.steps, [&](const PredictedStep& a, const PredictedStep& b) { return order(a) > order(b); });
   return limit;
 }
 

@@ -38,7 +38,7 @@ std::vector<InitialLevel> initial_levels(const PaperConfig& config, std::span<co
   chosen.push_back({deepest, true, {}});
   for (const double k : config.rules) {
     const std::uint32_t level = rule_level(levels, k).value_or(deepest);
-    auto at = std::find_if(chosen.begin(), chosen.end(), [level](const auto& c) { return c.level >= level; });
+    auto at = std::ranges::find_if(chosen, [level](const auto& c) { return c.level >= level; });
     if (at->level != level) {
       at = chosen.insert(at, {level, false, {}});
     }
@@ -49,8 +49,7 @@ std::vector<InitialLevel> initial_levels(const PaperConfig& config, std::span<co
 
 const LevelOutcome* RunOutcomes::by_rule(double k) const {
   for (const LevelOutcome& outcome : levels) {
-    if (std::find(outcome.initial.rules.begin(), outcome.initial.rules.end(), k) !=
-        outcome.initial.rules.end()) {
+    if (std::ranges::find(outcome.initial.rules, k) != outcome.initial.rules.end()) {
       return &outcome;
     }
   }

@@ -20,8 +20,7 @@ constexpr std::string_view pot = "teapot:12:pot";
 constexpr std::string_view large = "large";
 
 const SceneTrees* find(std::span<const SceneTrees> scenes, std::string_view name) {
-  const auto at =
-      std::find_if(scenes.begin(), scenes.end(), [name](const auto& s) { return s.scene == name; });
+  const auto at = std::ranges::find(scenes, name, &SceneTrees::scene);
   return at == scenes.end() ? nullptr : &*at;
 }
 
@@ -116,7 +115,7 @@ tables::Claim node_counts(std::span<const SceneTrees> scenes) {
 }
 
 const TracedRun* find_pot(std::span<const TracedRun> runs) {
-  const auto at = std::find_if(runs.begin(), runs.end(), [](const auto& r) { return r.run.scene == pot; });
+  const auto at = std::ranges::find_if(runs, [](const auto& r) { return r.run.scene == pot; });
   return at == runs.end() ? nullptr : &*at;
 }
 
@@ -142,7 +141,7 @@ tables::Claim access_fall(const TracedRun* run) {
   tables::Claim claim{"accesses by level, teapot", "they fall steeply beyond level 8", "",
                       tables::Verdict::not_measured};
   if (run != nullptr && accesses(*run, 8) != 0) {
-    const auto peak = std::max_element(run->visits.per_level.begin(), run->visits.per_level.end());
+    const auto peak = std::ranges::max_element(run->visits.per_level);
     const double left = static_cast<double>(accesses(*run, 9)) / static_cast<double>(accesses(*run, 8));
     claim.here = fmt::format("most on level {}; level 9 has {:.1f} % of the accesses of level 8",
                              peak - run->visits.per_level.begin() + 1, 100.0 * left);

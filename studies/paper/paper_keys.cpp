@@ -42,7 +42,7 @@ std::vector<PaperRun> read_runs(const sim::Config& config) {
   std::vector<PaperRun> runs;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     PaperRun run{scenes[i], static_cast<std::uint32_t>(depths[i])};
-    if (std::find(runs.begin(), runs.end(), run) != runs.end()) {
+    if (std::ranges::find(runs, run) != runs.end()) {
       config.fail("paper.run_scenes", "names " + sim::shown(name_of(run)) + " twice");
     }
     runs.push_back(std::move(run));

@@ -19,8 +19,7 @@ class KeptStrippedLogs {
   [[nodiscard]] std::shared_ptr<const processors::walk::StrippedLog> find(
       const processors::machine::MachineConfig& machine) {
     const std::lock_guard lock(mutex_);
-    const auto found =
-        std::find_if(logs_.begin(), logs_.end(), [&](const auto& log) { return log->suits(machine); });
+    const auto found = std::ranges::find_if(logs_, [&](const auto& log) { return log->suits(machine); });
     if (found == logs_.end()) {
       return nullptr;
     }

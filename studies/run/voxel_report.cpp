@@ -62,8 +62,8 @@ DatabaseUse database_use(const processors::program::WorkLog& log) {
       }
     }
   }
-  use.primitives = static_cast<std::uint64_t>(std::count(tested.begin(), tested.end(), true));
-  use.voxels = static_cast<std::uint64_t>(std::count(voxel_read.begin(), voxel_read.end(), true));
+  use.primitives = static_cast<std::uint64_t>(std::ranges::count(tested, true));
+  use.voxels = static_cast<std::uint64_t>(std::ranges::count(voxel_read, true));
   return use;
 }
 

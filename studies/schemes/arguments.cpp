@@ -34,7 +34,7 @@ bool is(Kind kind, const ScalingPoint& point) {
 
 // The points of the first machine of that kind; empty when it is missing or was timed too few times.
 std::vector<ScalingPoint> find(Kind kind, std::span<const ScalingPoint> points) {
-  const auto first = std::find_if(points.begin(), points.end(), [&](const auto& p) { return is(kind, p); });
+  const auto first = std::ranges::find_if(points, [&](const auto& p) { return is(kind, p); });
   if (first == points.end()) {
     return {};
   }
@@ -49,9 +49,8 @@ tables::Claim naive(std::span<const ScalingPoint> points) {
   tables::Claim claim{"naive pixel parallelism", "one shared memory saturates with few processors", "", {}};
   claim.verdict = tables::Verdict::not_measured;
   if (const std::vector<ScalingPoint> machine = find(Kind::naive, points); !machine.empty()) {
-    const auto best = std::max_element(machine.begin(), machine.end(), [](const auto& a, const auto& b) {
-      return speed_up(a) < speed_up(b);
-    });
+    const auto best = std::ranges::max_element(
+        machine, [](const auto& a, const auto& b) { return speed_up(a) < speed_up(b); });
     const ScalingPoint& last = machine.back();
     claim.here = fmt::format(
         "at most {} times as fast as one node, and with {} nodes the way to memory is {:.1f} % busy",
@@ -111,8 +110,7 @@ tables::Claim pipeline(std::span<const StagePoint> stages) {
                       tables::Verdict::not_measured};
   if (stages.size() > 1) {
     const StagePoint& first = stages.front();
-    const auto best = std::min_element(stages.begin(), stages.end(),
-                                       [](const auto& a, const auto& b) { return a.end < b.end; });
+    const auto best = std::ranges::min_element(stages, {}, &StagePoint::end);
     const auto describe = [](const StagePoint& point) {
       return fmt::format("{} + {} + {} nodes: {} {:.0f} % busy", point.nodes[0], point.nodes[1],
                          point.nodes[2], stage_names[point.slowest()], 100.0 * point.busy[point.slowest()]);
@@ -129,7 +127,7 @@ tables::Claim cells(std::span<const CellPoint> points) {
   tables::Claim claim{"size of the cells", "too small and too large cells both hurt the cache", "",
                       tables::Verdict::not_measured};
   if (points.size() >= fewest_points) {
-    const auto fewest = std::min_element(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    const auto fewest = std::ranges::min_element(points, [](const auto& a, const auto& b) {
       return a.tree.references.all_misses() < b.tree.references.all_misses();
     });
     const auto times = [&](const CellPoint& point) {

@@ -40,8 +40,7 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::replay::Mac
 
 std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const processors::program::WorkLog& log,
                                         std::span<const StagePoint> stages) {
-  const auto quickest = std::min_element(stages.begin(), stages.end(),
-                                         [](const auto& a, const auto& b) { return a.end < b.end; });
+  const auto quickest = std::ranges::min_element(stages, {}, &StagePoint::end);
   std::vector<ScalingPoint> points;
   sim::begin_part(config.frame.meter, "timing machines", "machines",
                   config.machines.size() * (1 + config.nodes.size()));
@@ -89,8 +88,8 @@ tables::Table scaling_table(std::span<const ScalingPoint> points) {
 
 std::vector<ScalingPoint> points_of(std::span<const ScalingPoint> points, std::string_view machine) {
   std::vector<ScalingPoint> found;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(found),
-               [&](const ScalingPoint& point) { return point.machine == machine; });
+  std::ranges::copy_if(points, std::back_inserter(found),
+                       [&](const ScalingPoint& point) { return point.machine == machine; });
   return found;
 }
 

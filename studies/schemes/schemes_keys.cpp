@@ -35,8 +35,8 @@ NamedMachine read_with(const std::filesystem::path& file, const keys::FrameConfi
   sim::Config config = sim::Config::from_file(run::run_schema(), file, assignments);
   (void)keys::read_frame(config);
   std::string name = file.stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); }, '_');
+  std::ranges::replace_if(
+      name, [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); }, '_');
   NamedMachine machine{std::move(name), keys::read_machine(config)};
   config.refuse_unused();
   return machine;

@@ -35,7 +35,7 @@ StagePoint time_shares(const SchemesConfig& config, const processors::program::W
 }  // namespace
 
 std::size_t StagePoint::slowest() const {
-  return static_cast<std::size_t>(std::max_element(busy.begin(), busy.end()) - busy.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(busy) - busy.begin());
 }
 
 std::vector<StagePoint> time_stages(const SchemesConfig& config, const processors::program::WorkLog& log) {

@@ -82,8 +82,7 @@ void class_lines(std::string& text, const run::RunResult& r) {
         sim::mapped(memory::miss_class_names, [&](const std::string_view kind) {
           return std::to_string(r.count(name + "_misses_" + std::string(kind)));
         });
-    const bool none =
-        std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell == "0"; });
+    const bool none = std::ranges::all_of(cells, [](const std::string& cell) { return cell == "0"; });
     text += none && name != "all" ? std::string() : table.row("  " + name, cells);
   };
   for (const std::string_view kind : memory::record_kind_names) {

@@ -90,8 +90,7 @@ std::string critical_path_lines(const run::RunResult& result) {
   const CriticalPath& path = *result.critical_path;
   std::array<std::size_t, processors::path::path_kinds> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return path.time[a] > path.time[b]; });
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return path.time[a] > path.time[b]; });
   std::string largest;
   for (const std::size_t kind : {order[0], order[1], order[2]}) {
     if (path.time[kind] > 0) {
@@ -99,7 +98,7 @@ std::string critical_path_lines(const run::RunResult& result) {
                              share(path.time[kind], path.end));
     }
   }
-  const auto most = std::max_element(path.nodes.begin(), path.nodes.end());
+  const auto most = std::ranges::max_element(path.nodes);
   return fmt::format(
       "\ncritical path {} pieces, {} of it work of single nodes, from node to node {} times\n"
       "  {:<12}{}\n"

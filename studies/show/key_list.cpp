@@ -18,8 +18,7 @@ using Json = nlohmann::ordered_json;
 
 void require_any(const sim::Schema& schema, std::string_view only) {
   const auto keys = schema.keys();
-  if (std::none_of(keys.begin(), keys.end(),
-                   [&](const sim::Key& key) { return sim::is_or_is_below(key, only); })) {
+  if (std::ranges::none_of(keys, [&](const sim::Key& key) { return sim::is_or_is_below(key, only); })) {
     throw sim::UserError("config: there is no key and no section \"" + sim::shown(only) + "\"" +
                          sim::did_you_mean(only, schema.names()) + "; `marti config` lists all keys");
   }

@@ -66,7 +66,7 @@ std::string loss_lines(const run::RunResult& r) {
                                  n - *speed_up, r.machine.all_nodes());
   for (const std::string_view loss : figures::loss_names) {
     std::string name(loss);
-    std::replace(name.begin(), name.end(), '_', ' ');
+    std::ranges::replace(name, '_', ' ');
     const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
     text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, tables::percent(part / n));
   }

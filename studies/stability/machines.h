@@ -21,7 +21,7 @@ struct NamedTiming {
   /// The name as the end of a case's id.
   [[nodiscard]] std::string id() const {
     std::string text = name;
-    std::replace(text.begin(), text.end(), ' ', '-');
+    std::ranges::replace(text, ' ', '-');
     return text;
   }
 };

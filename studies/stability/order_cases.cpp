@@ -1,6 +1,7 @@
 // Cases of order and of sums: simultaneous events, and statistics of a thousand million samples.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <random>
@@ -44,11 +45,11 @@ CaseOutcome orders_of_posting() {
         sim::Event::make(random.below(20), static_cast<std::uint8_t>(random.below(3)), random.below(50), k));
   }
   std::vector<sim::Event> sorted = events;
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted, std::less<>());
   Tally tally;
   std::mt19937_64 engine(92);
   for (int order = 0; order < 100; ++order) {
-    std::shuffle(events.begin(), events.end(), engine);
+    std::ranges::shuffle(events, engine);
     sim::Engine kernel;
     Notes notes;
     for (std::uint8_t c = 0; c < 3; ++c) {
@@ -168,7 +169,7 @@ CaseOutcome orders_of_merging() {
   Tally tally;
   std::mt19937_64 engine(94);
   for (int order = 0; order < 100; ++order) {
-    std::shuffle(parts.begin(), parts.end(), engine);
+    std::ranges::shuffle(parts, engine);
     std::vector<sim::Moments> left = parts;
     while (left.size() > 1) {  // any two at a time
       const std::size_t a = engine() % left.size();

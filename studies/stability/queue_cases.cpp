@@ -185,7 +185,7 @@ CaseOutcome littles_law(const CaseSize& size) {
     steps.emplace_back(arrival, 1);
     steps.emplace_back(bank.access(0, arrival).start, -1);
   }
-  std::sort(steps.begin(), steps.end());
+  std::ranges::sort(steps);
   sim::Ticks area = 0;
   sim::Ticks last = 0;
   std::int64_t length = 0;

@@ -70,8 +70,8 @@ CaseOutcome printed(const CaseSize& size) {
     idle += processors::replay::had_work(node) ? 0U : 1U;
   }
   for (std::string printed : {show::summary_of(result), show::json_of(result)}) {
-    std::transform(printed.begin(), printed.end(), printed.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::ranges::transform(printed, printed.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (const char* word : {" nan", "-nan", ":nan", " inf ", "-inf", ":inf", "(nan", "nan%"}) {
       tally.add(printed.find(word) == std::string::npos);
     }

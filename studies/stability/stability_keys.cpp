@@ -34,12 +34,12 @@ StabilityConfig read_stability(sim::Config& config, std::span<const StabilityCas
   std::vector<std::string> names;
   for (const StabilityCase& one : all) {
     names.push_back(one.id);
-    if (only.empty() || std::find(only.begin(), only.end(), one.id) != only.end()) {
+    if (only.empty() || std::ranges::find(only, one.id) != only.end()) {
       stability.cases.push_back(one);
     }
   }
   for (const std::string& name : only) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    if (std::ranges::find(names, name) == names.end()) {
       config.fail("stability.only",
                   "there is no case \"" + sim::shown(name) + "\"" + sim::did_you_mean(name, names));
     }

@@ -35,7 +35,7 @@ std::vector<std::uint64_t> settings_of(const SweepFrame& frame) {
       settings.push_back(std::hash<std::string>()(value.key + "=" + value.value));
     }
   }
-  std::sort(settings.begin(), settings.end());
+  std::ranges::sort(settings);
   return settings;
 }
 
@@ -85,12 +85,12 @@ FrameSamples::FrameSamples(const SweepPlan& plan, std::vector<std::size_t> frame
   }
   do {
     take_next();
-  } while (std::any_of(unlike_.begin(), unlike_.end(), [](std::size_t each) { return each != 0; }) &&
-           !too_large_ && !enough());
+  } while (std::ranges::any_of(unlike_, [](std::size_t each) { return each != 0; }) && !too_large_ &&
+           !enough());
 }
 
 void FrameSamples::take_next() {
-  const std::size_t most = *std::max_element(unlike_.begin(), unlike_.end());
+  const std::size_t most = *std::ranges::max_element(unlike_);
   // Of several the one in the middle, because the ends of an axis are the least like the others.
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < frames_.size(); ++i) {

@@ -127,7 +127,7 @@ class Sampling {
       stripped_seconds_ += (host::process_cpu_seconds() - begin) * scale;
       stripped_bytes_ += log.bytes * scale;
     }
-    const auto at = std::lower_bound(ways.begin(), ways.end(), StrippedLog::ways_of(plain));
+    const auto at = std::ranges::lower_bound(ways, StrippedLog::ways_of(plain));
     return made->second[static_cast<std::size_t>(at - ways.begin())];
   }
 
@@ -159,11 +159,11 @@ std::optional<MachinesEstimate> estimate_machines(
     const std::function<bool()>& enough) {
   Sampling sampling(plan, machines, samples, frame_of);
   std::vector<std::size_t> order;
-  std::copy_if(machines.begin(), machines.end(), std::back_inserter(order), [&](std::size_t number) {
+  std::ranges::copy_if(machines, std::back_inserter(order), [&](std::size_t number) {
     return processors::replay::host_bytes(plan.machines[number].config) <= most_sample_bytes;
   });
   std::mt19937_64 chance(1);
-  std::shuffle(order.begin(), order.end(), chance);
+  std::ranges::shuffle(order, chance);
   for (std::size_t i = 0; i < order.size() && (i == 0 || !enough()); ++i) {
     sampling.time(order[i]);
   }

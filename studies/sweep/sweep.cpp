@@ -45,16 +45,13 @@ unsigned threads_of(const SweepOptions& options) {
 
 template <class Part>
 std::vector<bool> found_in(const std::vector<std::string>& keys, const std::vector<Part>& parts) {
-  return sim::mapped(
-      parts, [&](const Part& part) { return std::binary_search(keys.begin(), keys.end(), part.key); });
+  return sim::mapped(parts, [&](const Part& part) { return std::ranges::binary_search(keys, part.key); });
 }
 
 // Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,
 // it stays.
 void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
-  const auto any = [](const std::vector<bool>& done) {
-    return std::find(done.begin(), done.end(), true) != done.end();
-  };
+  const auto any = [](const std::vector<bool>& done) { return std::ranges::find(done, true) != done.end(); };
   try {
     if (any(store.done()) || any(store.frames_done())) {
       return;

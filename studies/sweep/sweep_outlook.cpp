@@ -79,8 +79,7 @@ std::optional<double> seconds_of(const SweepPlan& plan, const std::vector<std::s
 SweepOutlook outlook_of(const SweepPlan& plan, const std::vector<bool>& machines_done,
                         const std::vector<bool>& frames_done, unsigned threads) {
   SweepOutlook outlook;
-  outlook.machines_done =
-      static_cast<std::size_t>(std::count(machines_done.begin(), machines_done.end(), true));
+  outlook.machines_done = static_cast<std::size_t>(std::ranges::count(machines_done, true));
   std::vector<std::size_t> left;
   std::vector<bool> needed(plan.frames.size());
   std::vector<std::uint64_t> bytes;

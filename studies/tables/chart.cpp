@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::size_t share_out(const std::string& field, Json& rows) {
   std::vector<Json> lines;
   for (Json& row : rows) {
-    const auto known = std::find(lines.begin(), lines.end(), row.at(field));
+    const auto known = std::ranges::find(lines, row.at(field));
     const auto place = static_cast<std::size_t>(known - lines.begin());
     if (known == lines.end()) {
       lines.push_back(row.at(field));
@@ -45,8 +45,7 @@ void make_panels(Json& chart) {
 }  // namespace
 
 const ChartSpecification& chart_named(std::span<const ChartSpecification> charts, std::string_view name) {
-  const auto found = std::find_if(charts.begin(), charts.end(),
-                                  [&](const ChartSpecification& chart) { return chart.name == name; });
+  const auto found = std::ranges::find(charts, name, &ChartSpecification::name);
   if (found == charts.end()) {
     throw sim::InternalError("there is no chart specification " + std::string(name));
   }

@@ -19,8 +19,8 @@ bool is_page(const fs::path& file) {
   constexpr std::string_view begin = "<!doctype html";
   std::string text(begin.size(), '\0');
   std::ifstream(file, std::ios::binary).read(text.data(), static_cast<std::streamsize>(text.size()));
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return text == begin;
 }
 

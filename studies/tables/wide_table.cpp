@@ -23,7 +23,7 @@ std::string plain_text(const Cell& cell) {
 /// Index of `wanted`, which is added when it is new.
 template <class T>
 std::size_t index_of(std::vector<T>& known, T wanted) {
-  const auto at = std::find(known.begin(), known.end(), wanted);
+  const auto at = std::ranges::find(known, wanted);
   if (at != known.end()) {
     return static_cast<std::size_t>(at - known.begin());
   }

@@ -146,7 +146,7 @@ class Verifier {
   // Items of the machine do not change the frame, so it is not rendered again.
   void check_machine(run::PlanItem item) {
     const auto& entries = result_.plan.entries;
-    const bool left_out = std::any_of(entries.begin(), entries.end(), [&](const run::PlanEntry& entry) {
+    const bool left_out = std::ranges::any_of(entries, [&](const run::PlanEntry& entry) {
       return entry.item == item && entry.decision == run::PlanDecision::left_out;
     });
     if (left_out) {

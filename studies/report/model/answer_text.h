@@ -8,7 +8,7 @@ namespace marti::studies::report {
 
 /// A figure's name as words: "bank access" for "bank_access".
 [[nodiscard]] inline std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
+  std::ranges::replace(name, '_', ' ');
   return name;
 }
 

@@ -104,8 +104,8 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
     fields.push_back({"part_" + std::string(group)});
   }
   std::erase_if(fields, [&](const ExplorerField& field) {
-    return std::none_of(sweep.points.begin(), sweep.points.end(),
-                        [&](const ReportPoint& point) { return point.has(field.name); });
+    return std::ranges::none_of(sweep.points,
+                                [&](const ReportPoint& point) { return point.has(field.name); });
   });
   return fields;
 }

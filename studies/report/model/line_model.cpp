@@ -99,8 +99,7 @@ std::optional<double> saturation_nodes(const PointCounters& counters) {
 
 LineModel::LineModel(std::vector<PointCounters> points, bool logarithmic)
     : points_(std::move(points)), logarithmic_(logarithmic) {
-  std::sort(points_.begin(), points_.end(),
-            [](const PointCounters& a, const PointCounters& b) { return a.x < b.x; });
+  std::ranges::sort(points_, {}, &PointCounters::x);
   sim::ensure(points_.size() >= 2, "a line model needs two points");
   for (std::size_t i = 0; i < points_.size(); ++i) {
     sim::ensure(points_[i].end > 0.0 && (i == 0 || points_[i - 1].x < points_[i].x) &&
@@ -184,7 +183,7 @@ ModelError LeaveOneOut::summary(std::vector<double> errors) {
   if (errors.empty()) {
     return error;
   }
-  std::sort(errors.begin(), errors.end());
+  std::ranges::sort(errors);
   const double mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(errors.size())));
   error.mean = sim::rounded(std::expm1(mean), curve_digits);

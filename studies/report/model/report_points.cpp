@@ -16,8 +16,7 @@ double ReportPoint::figure(std::string_view name) const {
 }
 
 std::optional<std::size_t> ReportPoints::axis(std::string_view name) const {
-  const auto at =
-      std::find_if(axes.begin(), axes.end(), [&](const ReportAxis& each) { return each.name == name; });
+  const auto at = std::ranges::find(axes, name, &ReportAxis::name);
   return at == axes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - axes.begin()));
 }
 

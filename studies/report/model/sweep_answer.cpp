@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -82,7 +83,7 @@ Advice advice(const ReportPoints& sweep, const ReportPoint& from) {
       }
     }
   }
-  std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.gain > b.gain; });
+  std::ranges::stable_sort(steps, std::greater{}, &Step::gain);
   for (const Step& step : steps) {
     advice.text += (advice.text.empty() ? "" : "; ") + step.text;
   }
@@ -136,8 +137,8 @@ std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view fi
 }  // namespace
 
 Chosen choose(const ReportPoints& sweep, std::optional<double> budget) {
-  const auto shortest = std::min_element(
-      sweep.points.begin(), sweep.points.end(),
+  const auto shortest = std::ranges::min_element(
+      sweep.points,
       [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
   Chosen chosen;
   chosen.front = front_by(sweep, "price", shortest->frame);
@@ -165,9 +166,8 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
   const ReportPoint& fastest = sweep.points[chosen.fastest];
   const ReportPoint& knee = sweep.points[chosen.knee];
   const std::string unit = sweep.priced ? "at a price of" : "with a node count of";
-  const auto compared = static_cast<std::size_t>(
-      std::count_if(sweep.points.begin(), sweep.points.end(),
-                    [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
+  const auto compared = static_cast<std::size_t>(std::ranges::count_if(
+      sweep.points, [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
   std::vector<std::string> answer;
   const auto add_limit = [&](const char* begin, const ReportPoint& point) {
     if (!point.limit.empty()) {

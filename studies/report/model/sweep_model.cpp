@@ -58,7 +58,7 @@ std::vector<double> samples_of(const ReportAxis& axis, const sim::Schema& schema
     x.push_back(
         std::min(place(values[last - 1], values[last], 1.0 + share), std::max(highest, values[last])));
   }
-  std::sort(x.begin(), x.end());
+  std::ranges::sort(x);
   x.erase(std::unique(x.begin(), x.end()), x.end());
   // Extrapolation stops at 1 for whole numbers and at 0 for other values, unless the axis itself starts
   // lower.

@@ -76,7 +76,7 @@ void keep_folded(Json& spec, const Json& names) {
   }
   Json& folded = first["fold"];
   for (std::size_t i = folded.size(); i-- > 0;) {
-    if (std::find(names.begin(), names.end(), folded[i]) != names.end()) {
+    if (std::ranges::find(names, folded[i]) != names.end()) {
       continue;
     }
     for (const char* channel : {"color", "shape"}) {
@@ -149,9 +149,9 @@ void add_front(const ReportPoints& sweep, const std::string& figure, const std::
   chart.note =
       "Every machine of the sweep; the line joins those that no other beats in both. Named are the "
       "fastest, the knee, the best within the budget where one is given, and the chosen one.";
-  const bool has_free = std::any_of(
-      sweep.points.begin(), sweep.points.end(),
-      [&figure](const ReportPoint& point) { return point.has(figure) && point.figure(figure) <= 0.0; });
+  const bool has_free = std::ranges::any_of(sweep.points, [&figure](const ReportPoint& point) {
+    return point.has(figure) && point.figure(figure) <= 0.0;
+  });
   if (has_free) {
     chart.spec["encoding"]["x"]["scale"] = {{"type", "linear"}, {"nice", false}};
   }
@@ -249,8 +249,7 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, models, chosen, axis);
   if (axis) {
-    const auto model =
-        std::find_if(models.begin(), models.end(), [&](const AxisModel& each) { return each.axis == *axis; });
+    const auto model = std::ranges::find(models, *axis, &AxisModel::axis);
     const AxisModel* const curve = model == models.end() ? nullptr : &*model;
     add_explored("frame_time", "Frame time", sweep.axes[*axis], curve,
                  {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}}, report);

@@ -77,7 +77,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& added)
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
     const std::string_view name = text.substr(0, text.find('=') + 1);
-    if (std::none_of(added.begin(), added.end(), [&](const std::string& a) { return a.starts_with(name); })) {
+    if (std::ranges::none_of(added, [&](const std::string& a) { return a.starts_with(name); })) {
       all.emplace_back(text);
     }
   }

@@ -30,9 +30,8 @@ constexpr std::chrono::seconds limit(120);
 void check_names(const std::vector<ReportChart>& charts) {
   std::set<std::string_view> names;
   for (const ReportChart& chart : charts) {
-    const bool plain = std::none_of(chart.name.begin(), chart.name.end(), [](char c) {
-      return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    });
+    const bool plain = std::ranges::none_of(
+        chart.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
     if (!plain || chart.name.empty() || chart.name.front() == '.' || chart.name.size() > 200) {
       throw sim::UserError("chart \"" + chart.name + "\": this cannot be the name of a file");
     }

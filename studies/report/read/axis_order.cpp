@@ -26,13 +26,13 @@ AxisColumn column_of(const std::string& name, std::size_t at,
   AxisColumn column;
   column.name = name;
   for (const std::vector<tables::Cell>& point : points) {
-    if (std::find(column.values.begin(), column.values.end(), point[at]) == column.values.end()) {
+    if (std::ranges::find(column.values, point[at]) == column.values.end()) {
       column.values.push_back(point[at]);
     }
   }
-  std::stable_sort(column.values.begin(), column.values.end(), before);
+  std::ranges::stable_sort(column.values, before);
   for (const std::vector<tables::Cell>& point : points) {
-    const auto found = std::find(column.values.begin(), column.values.end(), point[at]);
+    const auto found = std::ranges::find(column.values, point[at]);
     column.index.push_back(static_cast<std::size_t>(found - column.values.begin()));
   }
   return column;

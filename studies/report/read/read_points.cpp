@@ -252,9 +252,10 @@ ReportAxis make_axis(const AxisColumn& column) {
   axis.followers = column.followers;
   axis.values = column.values;
   axis.unit = sweep::axis_unit(column.name);
-  axis.numeric = !sweep::is_boolean_axis(column.name) &&
-                 std::all_of(axis.values.begin(), axis.values.end(),
-                             [](const tables::Cell& cell) { return tables::number_of(cell).has_value(); });
+  axis.numeric =
+      !sweep::is_boolean_axis(column.name) && std::ranges::all_of(axis.values, [](const tables::Cell& cell) {
+        return tables::number_of(cell).has_value();
+      });
   for (const tables::Cell& value : axis.values) {
     axis.texts.push_back(sweep::axis_text(column.name, value));
   }
@@ -264,9 +265,8 @@ ReportAxis make_axis(const AxisColumn& column) {
     const std::size_t last = numbers.size() - 1;
     axis.logarithmic = numbers.front() > 0.0 &&
                        (last < 2 || numbers[last] - numbers[last - 1] > 1.5 * (numbers[1] - numbers[0]));
-    axis.integer = std::all_of(axis.values.begin(), axis.values.end(), [](const tables::Cell& cell) {
-      return std::holds_alternative<std::int64_t>(cell);
-    });
+    axis.integer = std::ranges::all_of(
+        axis.values, [](const tables::Cell& cell) { return std::holds_alternative<std::int64_t>(cell); });
   }
   return axis;
 }
@@ -331,9 +331,8 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   }
   check_places(store, sweep);
   sweep.settings = settings.shared();
-  sweep.priced = std::any_of(sweep.points.begin(), sweep.points.end(), [&](const ReportPoint& point) {
-    return point.cost != sweep.points.front().cost;
-  });
+  sweep.priced = std::ranges::any_of(
+      sweep.points, [&](const ReportPoint& point) { return point.cost != sweep.points.front().cost; });
   for (ReportPoint& point : sweep.points) {
     point.figures["price"] = sweep.priced ? point.cost : point.figure("nodes");
   }

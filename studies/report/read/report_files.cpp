@@ -64,7 +64,7 @@ std::vector<fs::path> files_ending_in(const fs::path& directory, std::string_vie
   if (error) {
     throw sim::UserError(directory.string() + ": cannot be read: " + error.message());
   }
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -89,8 +89,7 @@ Json read_chart_rows(const fs::path& file) {
     refuse(file, "has no rows under data.values");
   }
   for (const Json& row : chart[place]) {
-    if (!row.is_object() ||
-        std::any_of(row.begin(), row.end(), [](const Json& cell) { return cell.is_structured(); })) {
+    if (!row.is_object() || std::ranges::any_of(row, [](const Json& cell) { return cell.is_structured(); })) {
       refuse(file, "has rows under data.values that are no objects of numbers and texts");
     }
   }

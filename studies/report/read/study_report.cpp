@@ -176,10 +176,9 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
 }
 
 bool has_columns(const tables::Table& table, std::span<const std::string_view> names) {
-  return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
+  return std::ranges::all_of(names, [&](std::string_view name) {
     const auto columns = table.columns();
-    return std::any_of(columns.begin(), columns.end(),
-                       [&](const tables::Column& column) { return column.name == name; });
+    return std::ranges::any_of(columns, [&](const tables::Column& column) { return column.name == name; });
   });
 }
 

@@ -94,8 +94,7 @@ PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::
 
 PlanEntry textures(const PlanFacts& facts) {
   const SceneNeeds& needs = facts.needs;
-  const auto used =
-      static_cast<std::uint64_t>(std::count(needs.textures.begin(), needs.textures.end(), true));
+  const auto used = static_cast<std::uint64_t>(std::ranges::count(needs.textures, true));
   Choice choice;
   choice.exists = !needs.textures.empty();
   choice.needed = used == needs.textures.size();
@@ -156,7 +155,7 @@ PlanEntry unreachable(const PlanFacts& facts) {
 PlanEntry structures(const PlanFacts& facts) {
   // Those that sort primitives into cells: a bounding volume hierarchy divides lists of them instead.
   const auto kinds = accel::structure_kinds();
-  const auto others = std::count_if(kinds.begin(), kinds.end(), [&](std::string_view kind) {
+  const auto others = std::ranges::count_if(kinds, [&](std::string_view kind) {
     return kind != facts.structure && kind != accel::BruteForce::kind_name && kind != accel::Bvh::kind_name;
   });
   return entry_of(PlanItem::structures, PlanClass::proved, facts.keep,
@@ -227,7 +226,7 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
 }
 
 bool is_left_out(const Plan& plan, PlanItem item) {
-  return std::any_of(plan.entries.begin(), plan.entries.end(), [&](const PlanEntry& entry) {
+  return std::ranges::any_of(plan.entries, [&](const PlanEntry& entry) {
     return entry.item == item && entry.decision == PlanDecision::left_out;
   });
 }

@@ -21,7 +21,7 @@ KeptItems::KeptItems(std::span<const std::string> names) {
       bits_.set();
       continue;
     }
-    const auto* const at = std::find(plan_item_names.begin(), plan_item_names.end(), name);
+    const auto* const at = std::ranges::find(plan_item_names, name);
     if (at == plan_item_names.end()) {
       std::vector<std::string> known(plan_item_names.begin(), plan_item_names.end());
       known.emplace_back(everything);
@@ -45,8 +45,7 @@ KeptItems KeptItems::all() {
 void add_entries(Plan& plan, std::vector<PlanEntry> entries) {
   plan.entries.insert(plan.entries.end(), std::make_move_iterator(entries.begin()),
                       std::make_move_iterator(entries.end()));
-  std::stable_sort(plan.entries.begin(), plan.entries.end(),
-                   [](const PlanEntry& a, const PlanEntry& b) { return a.item < b.item; });
+  std::ranges::stable_sort(plan.entries, {}, &PlanEntry::item);
 }
 
 }  // namespace marti::studies::run

@@ -48,10 +48,9 @@ bool View::may_meet(const Corners& corners) const {
   for (const glm::dvec3& corner : corners) {
     reach = std::max(reach, glm::length(corner - eye_) + glm::length(corner));
   }
-  return std::none_of(outward_.begin(), outward_.end(), [&](const glm::dvec3& outward) {
-    return std::all_of(corners.begin(), corners.end(), [&](const glm::dvec3& corner) {
-      return glm::dot(outward, corner - eye_) > margin * reach;
-    });
+  return std::ranges::none_of(outward_, [&](const glm::dvec3& outward) {
+    return std::ranges::all_of(
+        corners, [&](const glm::dvec3& corner) { return glm::dot(outward, corner - eye_) > margin * reach; });
   });
 }
 

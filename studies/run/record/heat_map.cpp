@@ -54,7 +54,7 @@ Legend legend_of(const std::vector<float>& figures) {
   const auto rank = static_cast<std::ptrdiff_t>((sorted.size() * 99 + 99) / 100 - 1);
   std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
   legend.brightest = static_cast<double>(sorted[static_cast<std::size_t>(rank)]);
-  legend.largest = static_cast<double>(*std::max_element(figures.begin(), figures.end()));
+  legend.largest = static_cast<double>(*std::ranges::max_element(figures));
   if (legend.brightest == 0.0) {
     legend.brightest = legend.largest;
   }

@@ -52,7 +52,7 @@ std::vector<std::uint32_t> parse_nodes(std::string_view text, std::uint32_t node
     }
     rest = rest.substr(comma + 1);
   }
-  std::sort(list.begin(), list.end());
+  std::ranges::sort(list);
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
 }

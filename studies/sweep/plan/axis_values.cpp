@@ -37,7 +37,7 @@ class RangeReader {
   Range read() const {
     for (const DocumentEntry& entry : *value_.table()) {
       const std::vector<std::string> parts = {"from", "to", "steps", "scale"};
-      if (std::find(parts.begin(), parts.end(), entry.name) == parts.end()) {
+      if (std::ranges::find(parts, entry.name) == parts.end()) {
         fail(entry.line, "a range has from, to, steps and scale, not \"" + sim::shown(entry.name) + "\"" +
                              sim::did_you_mean(entry.name, parts));
       }

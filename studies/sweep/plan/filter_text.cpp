@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 24> functions = {
 
 template <std::size_t N>
 bool holds(const std::array<std::string_view, N>& list, std::string_view name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
+  return std::ranges::find(list, name) != list.end();
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -231,7 +231,7 @@ class Translator {
   void column(std::string_view name, std::size_t index) {
     result_.sql += "\"" + std::string(name) + "\"";
     compared_ = function_depth_ == 0 ? std::optional(index) : std::nullopt;
-    if (std::find(result_.columns.begin(), result_.columns.end(), index) == result_.columns.end()) {
+    if (std::ranges::find(result_.columns, index) == result_.columns.end()) {
       result_.columns.push_back(index);
     }
   }
@@ -278,7 +278,7 @@ class Translator {
       fail(key->name + " is no text and cannot be compared with '" + sim::shown(content) + "'");
     }
     if (key->type == sim::ValueType::choice &&
-        std::find(key->choices.begin(), key->choices.end(), content) == key->choices.end()) {
+        std::ranges::find(key->choices, content) == key->choices.end()) {
       fail(key->name + " is never '" + sim::shown(content) + "'" + sim::did_you_mean(content, key->choices) +
            "; it is " + sim::print_range(*key));
     }

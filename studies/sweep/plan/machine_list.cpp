@@ -59,7 +59,7 @@ void MachineList::used_by_point(std::size_t machine, std::size_t point) {
 void MachineList::move_into(SweepPlan& plan) && {
   std::vector<std::size_t> order(machines_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     return std::pair(machines_[a].frame, first_point_[a]) < std::pair(machines_[b].frame, first_point_[b]);
   });
   std::vector<std::size_t> place(order.size());
@@ -105,8 +105,7 @@ std::size_t MachineList::enter_frame(const ReadPoint& read) {
     }
   }
   std::string key = digest.hex();
-  const auto same =
-      std::find_if(frames_.begin(), frames_.end(), [&](const SweepFrame& frame) { return frame.key == key; });
+  const auto same = std::ranges::find(frames_, key, &SweepFrame::key);
   const auto index = static_cast<std::size_t>(same - frames_.begin());
   if (same == frames_.end()) {
     frames_.push_back({std::move(key), read.frame, frame_settings(read), hash});

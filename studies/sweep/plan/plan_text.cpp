@@ -55,7 +55,7 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   for (const SweepPoint& point : plan.points) {
     asked_for[point.machine] = true;
   }
-  const auto of_points = static_cast<std::size_t>(std::count(asked_for.begin(), asked_for.end(), true));
+  const auto of_points = static_cast<std::size_t>(std::ranges::count(asked_for, true));
   std::string machines = number(plan.machines.size());
   if (of_points < plan.machines.size()) {
     machines += fmt::format(" ({} of points, {} to measure them against)", number(of_points),

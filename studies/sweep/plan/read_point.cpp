@@ -78,8 +78,7 @@ ReadPoint read_point(sim::Config config) {
   Digest timing;
   const std::vector<bool> used = keys_read(point.config);
   point.settings.reserve(
-      static_cast<std::size_t>(std::count(used.begin(), used.end(), true) -
-                               std::count(point.frame_keys.begin(), point.frame_keys.end(), true)));
+      static_cast<std::size_t>(std::ranges::count(used, true) - std::ranges::count(point.frame_keys, true)));
   for (std::size_t key = 0; key < keys; ++key) {
     const sim::Key& declared = point.config.schema().keys()[key];
     if (point.frame_keys[key]) {
@@ -131,8 +130,8 @@ sim::Config one_node_config(const ReadPoint& point) {
 }
 
 bool is_set_for_one_node(std::string_view key) {
-  return std::find(single.begin(), single.end(), key) != single.end() ||
-         std::find(counting_keys.begin(), counting_keys.end(), key) != counting_keys.end();
+  return std::ranges::find(single, key) != single.end() ||
+         std::ranges::find(counting_keys, key) != counting_keys.end();
 }
 
 }  // namespace marti::studies::sweep

@@ -148,11 +148,11 @@ class Planner {
   // Points that differ only in what their base machine overrides share one base machine.
   void find_strides_of_bases() {
     for (const SweepAxis& axis : table_.axes) {
-      const bool overridden = std::all_of(axis.keys.begin(), axis.keys.end(), [&](std::size_t key) {
-        return table_.base.empty()
-                   ? is_set_for_one_node(config_.schema().names()[key])
-                   : std::any_of(table_.base.begin(), table_.base.end(),
-                                 [&](const sim::Setting& setting) { return setting.key == key; });
+      const bool overridden = std::ranges::all_of(axis.keys, [&](std::size_t key) {
+        return table_.base.empty() ? is_set_for_one_node(config_.schema().names()[key])
+                                   : std::ranges::any_of(table_.base, [&](const sim::Setting& setting) {
+                                       return setting.key == key;
+                                     });
       });
       shapes_base_.push_back(!overridden);
     }

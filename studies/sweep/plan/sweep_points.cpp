@@ -39,8 +39,7 @@ sim::Value SweepPoints::value(std::uint64_t point, std::size_t key) const {
   std::span<const sim::Value> values = config_.values_at(key);
   if (const std::size_t axis = axis_of_key_[key]; axis < table_.axes.size()) {
     const std::vector<sim::Setting>& step = table_.axes[axis].steps[this->step(point, axis)];
-    const auto found = std::find_if(step.begin(), step.end(),
-                                    [&](const sim::Setting& setting) { return setting.key == key; });
+    const auto found = std::ranges::find(step, key, &sim::Setting::key);
     if (found != step.end()) {
       values = found->values;
     }

@@ -39,7 +39,7 @@ class TableReader {
            "there is nothing to sweep over: give lists of values in [sweep.axes], [[sweep.zip]] or "
            "[sweep.points.NAME], or --axis KEY=VALUE,VALUE,...");
     }
-    std::stable_sort(table_.axes.begin(), table_.axes.end(), [](const SweepAxis& a, const SweepAxis& b) {
+    std::ranges::stable_sort(table_.axes, [](const SweepAxis& a, const SweepAxis& b) {
       const bool first = a.kind == SweepAxis::Kind::named;
       return first != (b.kind == SweepAxis::Kind::named) ? first : a.line < b.line;
     });
@@ -151,8 +151,7 @@ class TableReader {
 
   static bool sweepable(std::string_view name) {
     constexpr std::array<std::string_view, 4> others = {"host_machine.", "record.", "prices.", "sweep."};
-    return std::none_of(others.begin(), others.end(),
-                        [&](std::string_view section) { return name.starts_with(section); });
+    return std::ranges::none_of(others, [&](std::string_view section) { return name.starts_with(section); });
   }
 
   void refuse_unsweepable(const std::string& name, int line) const {
@@ -218,8 +217,8 @@ class TableReader {
     SweepAxis axis{SweepAxis::Kind::named, line, {}, {}, {}};
     for (const DocumentEntry& point : points) {
       const std::string name = "sweep.points." + point.name;
-      const bool plain = std::all_of(point.name.begin(), point.name.end(),
-                                     [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
+      const bool plain = std::ranges::all_of(
+          point.name, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
       if (point.name.empty() || point.name.size() > longest_point_name || !plain) {
         fail(point.line, "sweep.points",
              "a point's name has 1 to " + std::to_string(longest_point_name) +
@@ -228,7 +227,7 @@ class TableReader {
       axis.names.push_back(point.name);
       axis.steps.push_back(assignments(point.value, name));
       for (const sim::Setting& setting : axis.steps.back()) {
-        if (std::find(axis.keys.begin(), axis.keys.end(), setting.key) == axis.keys.end()) {
+        if (std::ranges::find(axis.keys, setting.key) == axis.keys.end()) {
           enter(setting.key, setting.line);
           axis.keys.push_back(setting.key);
         }
@@ -245,7 +244,7 @@ class TableReader {
     std::vector<sim::Setting> settings;
     for_each_key(table_of(value, part), part, "", [&](std::size_t key, const DocumentEntry& entry) {
       const auto same = [&](const sim::Setting& setting) { return setting.key == key; };
-      if (std::any_of(settings.begin(), settings.end(), same)) {
+      if (std::ranges::any_of(settings, same)) {
         fail(entry.line, config_.schema().names()[key], "is given twice in [" + part + "]");
       }
       settings.push_back({key, config_.parse(key, entry.value), entry.line, {}});

@@ -63,7 +63,7 @@ tables::RunJson point_result(const SweepReader& sweep, std::int64_t ordinal, con
   std::vector<sim::EffectiveValue> settings;
   const std::vector<std::string>& axes = sweep.axes();
   for (const auto& [key, value] : sweep.settings(point.machine)) {
-    const bool is_axis = std::find(axes.begin(), axes.end(), key) != axes.end();
+    const bool is_axis = std::ranges::find(axes, key) != axes.end();
     settings.push_back({key, value, is_axis, {}});
   }
   // The store has histograms of all clusters together.

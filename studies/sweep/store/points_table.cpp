@@ -126,7 +126,7 @@ BestPoints best_points(const SweepReader& reader, const std::string& metric, std
     throw sim::UserError(
         fmt::format("{}: no point costs at most {:g}; the cheapest that has the figure {} costs {:g}",
                     reader.file().string(), budget.value_or(0.0), metric,
-                    std::min_element(offers.begin(), offers.end(), by_cost)->cost));
+                    std::ranges::min_element(offers, by_cost)->cost));
   }
   std::vector<Row> front;
   std::vector<Row> marked;  // with whether it is the best

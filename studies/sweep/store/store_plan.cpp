@@ -55,8 +55,8 @@ class Settings {
       }
       sections.push_back(known->second);
     }
-    std::sort(sections.begin(), sections.end());
-    sim::ensure(std::adjacent_find(sections.begin(), sections.end()) == sections.end(),
+    std::ranges::sort(sections);
+    sim::ensure(std::ranges::adjacent_find(sections) == sections.end(),
                 "a machine of a sweep has a setting twice");
     return sections;
   }
@@ -73,7 +73,7 @@ class Settings {
   std::int64_t section_of(const std::vector<sim::EffectiveValue>& values) {
     std::vector<std::int64_t> members =
         sim::mapped(values, [&](const sim::EffectiveValue& value) { return setting(value); });
-    std::sort(members.begin(), members.end());
+    std::ranges::sort(members);
     const auto [at, is_new] = sections_.try_emplace(members, next_section_);
     if (is_new) {
       for (const std::int64_t member : members) {
@@ -161,7 +161,7 @@ void enter_points(tables::SqliteConnection& connection, const SweepPlan& plan,
     sim::ensure(point.values.size() == plan.axes.size(), "a point of a sweep lacks a value");
     std::vector<tables::Cell> cells = {ordinal++, machines.at(point.machine), machines.at(point.base),
                                        point.cost};
-    std::transform(point.values.begin(), point.values.end(), std::back_inserter(cells), axis_cell);
+    std::ranges::transform(point.values, std::back_inserter(cells), axis_cell);
     insert.run(cells);
   }
 }

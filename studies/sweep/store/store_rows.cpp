@@ -20,7 +20,7 @@ std::vector<int> places_of(const tables::SqliteStatement& row,
   const std::vector<std::string> names = row.column_names();
   std::vector<int> places;
   for (const figures::FigureEntry& column : columns) {
-    const auto at = std::find(names.begin(), names.end(), column.name);
+    const auto at = std::ranges::find(names, column.name);
     places.push_back(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
   }
   return places;
@@ -64,7 +64,7 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
   result_.run(cells);
   const auto names = sweep_histogram_names();
   for (const SweepHistogram& histogram : row.histograms) {
-    const auto name = std::find(names.begin(), names.end(), histogram.what);
+    const auto name = std::ranges::find(names, histogram.what);
     sim::ensure(name != names.end(), "a row has an unknown histogram");
     for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
       const auto highest = is_usual(bucket) ? std::nullopt : std::optional(bucket.highest);

@@ -64,7 +64,7 @@ SweepReader::SweepReader(const std::filesystem::path& file)
   figures_ = columns_of(connection_, "summary");
   summary_figures_ = figures_.size();
   for (const std::string& counter : columns_of(connection_, "results")) {
-    if (counter != "checksum" && std::find(figures_.begin(), figures_.end(), counter) == figures_.end()) {
+    if (counter != "checksum" && std::ranges::find(figures_, counter) == figures_.end()) {
       figures_.push_back(counter);
     }
   }
@@ -88,7 +88,7 @@ std::vector<std::string> SweepReader::keys(const std::string& sql) const {
   while (statement.next()) {
     found.push_back(statement.text(0));
   }
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   return found;
 }
 
@@ -126,7 +126,7 @@ void SweepReader::for_each_point(
     sql += ", s." + tables::sql_name(axis);
   }
   for (const std::string& name : names) {
-    const auto at = std::find(figures_.begin(), figures_.end(), name);
+    const auto at = std::ranges::find(figures_, name);
     if (at == figures_.end()) {
       throw sim::UserError(file_.string() + ": there is no figure \"" + name + "\"" +
                            sim::did_you_mean(name, figures_));

@@ -22,7 +22,7 @@ std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std:
     MachineBatch& batch = batches[entry->second];
     batch.machines.push_back(number);
     const std::uint32_t ways = StrippedLog::ways_of(machine.config);
-    const auto place = std::lower_bound(batch.ways.begin(), batch.ways.end(), ways);
+    const auto place = std::ranges::lower_bound(batch.ways, ways);
     if (place == batch.ways.end() || *place != ways) {
       batch.ways.insert(place, ways);
     }

@@ -30,7 +30,7 @@ Schedule::Schedule(const SweepPlan& plan, const std::vector<bool>& machines_done
     batch.ways = std::move(made.ways);
     batch.machines = std::move(made.machines);
     batch.size = batch.machines.size();
-    std::reverse(batch.machines.begin(), batch.machines.end());
+    std::ranges::reverse(batch.machines);
     Frame& frame = frames_[batch.frame];
     frame.batches.push_back(batches_.size() - 1);
     frame.left += batch.size;

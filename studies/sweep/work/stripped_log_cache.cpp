@@ -12,16 +12,14 @@ std::shared_ptr<const processors::walk::StrippedLog> StrippedLogCache::get(
     std::span<const std::uint32_t> ways) {
   using processors::walk::StrippedLog;
   const std::string key = StrippedLog::key_of(machine);
-  if (key.empty() ||
-      !pays(sharing, std::any_of(ways.begin(), ways.end(), [](auto each) { return each != 0; }))) {
+  if (key.empty() || !pays(sharing, std::ranges::any_of(ways, [](auto each) { return each != 0; }))) {
     return nullptr;
   }
   std::shared_ptr<Entry> entry;
   {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const std::shared_ptr<Entry>& e) {
-      return e->frame == frame && e->key == key;
-    });
+    const auto found = std::ranges::find_if(
+        entries_, [&](const std::shared_ptr<Entry>& e) { return e->frame == frame && e->key == key; });
     if (found != entries_.end()) {
       entries_.splice(entries_.begin(), entries_, found);
     } else {
@@ -38,7 +36,7 @@ std::shared_ptr<const processors::walk::StrippedLog> StrippedLogCache::get(
   if (!entry->made) {
     make(*entry, *log, machine, ways);
   }
-  const auto wanted = std::find(entry->ways.begin(), entry->ways.end(), StrippedLog::ways_of(machine));
+  const auto wanted = std::ranges::find(entry->ways, StrippedLog::ways_of(machine));
   sim::ensure(wanted != entry->ways.end(), "a log is not stripped for a machine of its batch");
   return entry->logs[static_cast<std::size_t>(wanted - entry->ways.begin())];
 }
@@ -51,7 +49,7 @@ void StrippedLogCache::make(Entry& entry, const processors::program::WorkLog& lo
   entry.ways.assign(ways.begin(), ways.end());
   entry.logs = StrippedLog::make(log, machine, ways, left);
   const auto missing = [](const auto& each) { return each == nullptr; };
-  if (ways.size() > 1 && std::all_of(entry.logs.begin(), entry.logs.end(), missing)) {
+  if (ways.size() > 1 && std::ranges::all_of(entry.logs, missing)) {
     // They do not fit together. Those for many ways take the least memory.
     for (std::size_t i = ways.size(); i-- > 0;) {
       entry.logs[i] = StrippedLog::make(log, machine, ways.subspan(i, 1), left).front();
