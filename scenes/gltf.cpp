@@ -285,8 +285,4 @@ AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& op
   return AnimatedScene(std::make_shared<const GltfPoses>(path, options, decode));
 }
 
-Scene load_gltf(const std::filesystem::path& path, const FileOptions& options, const ImageDecoder& decode) {
-  return open_gltf(path, options, decode).asked_for(options.time, path.string());
-}
-
 }  // namespace marti::scenes

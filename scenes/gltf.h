@@ -48,8 +48,4 @@ namespace marti::scenes {
 [[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& options,
                                       const ImageDecoder& decode);
 
-/// The pose at `options.time`. A time other than 0 is an error when no animation plays.
-[[nodiscard]] Scene load_gltf(const std::filesystem::path& path, const FileOptions& options,
-                              const ImageDecoder& decode);
-
 }  // namespace marti::scenes

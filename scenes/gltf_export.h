@@ -4,7 +4,7 @@
 // Positions and normals become 32-bit floats; triangles keep their order (unless that would take more than
 // 4,096 primitives: then they are sorted by material). Materials are written twice: approximately as
 // metallic/roughness, transmission and index of refraction for other programs, and exactly in `extras.marti`,
-// which load_gltf reads back:
+// which open_gltf reads back:
 //   { "color": [r,g,b], "specular_color": [r,g,b], "emission": [r,g,b], "diffuse": x, "reflection": x,
 //     "transmission": x, "ior": x, "highlight": x, "shininess": x }
 // A light's `extras.marti` holds { "inverse_square": false } when its intensity does not fall off; the

@@ -11,8 +11,6 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr double largest_emission = 1e9;
-constexpr double largest_ior = 100.0;
 constexpr double largest_shininess = 1e5;
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {

@@ -12,9 +12,7 @@ namespace marti::scenes {
 
 namespace {
 
-constexpr double largest_emission = 1e9;
 constexpr double largest_exponent = 1e5;
-constexpr double largest_ior = 100.0;
 
 /// Statements of the format and of its customary extensions (physically based ones, those of Maya and 3ds
 /// Max) that say nothing about what Whitted's model has.

@@ -30,6 +30,10 @@ struct Triangle {
 /// Whitted's material with the weights of the Standard Procedural Databases.
 /// Shaded colour = emission + ambient + sum over visible lights (color * diffuse * n.l + highlight *
 /// (n.h)^shininess) * light + reflection * reflected ray + transmission * refracted ray.
+// What a file may ask for; shading stays finite with it.
+inline constexpr double largest_emission = 1e9;
+inline constexpr double largest_ior = 100.0;
+
 struct Material {
   std::string name;
   glm::dvec3 color{0.8};           ///< linear, 0 to 1; multiplied by the texture if there is one

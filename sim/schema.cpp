@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/joined.h"
 #include "sim/units.h"
 
 namespace marti::sim {
@@ -28,15 +29,6 @@ std::string quote(std::string_view text) {
     }
   }
   return quoted + "\"";
-}
-
-std::string in_words(const std::vector<std::string>& names) {
-  std::string words;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    words += i == 0 ? "" : i + 1 == names.size() ? " or " : ", ";
-    words += names[i];
-  }
-  return words;
 }
 
 /// A value without TOML's quotation marks.
@@ -185,7 +177,7 @@ std::string print_values(const Key& key, std::span<const Value> values) {
 
 std::string print_range(const Key& key) {
   if (key.type == ValueType::choice) {
-    return in_words(key.choices);
+    return listed(key.choices, " or ");
   }
   if (key.minimum && key.maximum) {
     return print_bare(key.type, *key.minimum) + " to " + print_bare(key.type, *key.maximum);

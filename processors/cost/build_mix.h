@@ -10,10 +10,6 @@
 #include "processors/machine/machine_config.h"
 #include "sim/time.h"
 
-namespace marti::accel {
-class Octree;
-}  // namespace marti::accel
-
 namespace marti::processors::cost {
 
 /// Means in thousandths of an operation. listed: one listed primitive against the middle planes (its
@@ -28,19 +24,6 @@ struct BuildMixes {
 /// The table that build_cycles prices. Measured on teapot:12 in an octree (max_objects 9, max_level 12). A
 /// bsp tree's node is priced by it too: it tests the same triangles against boxes made in the same way.
 [[nodiscard]] const BuildMixes& build_mixes();
-
-/// The result of a measurement: the means, and how many samples each mean is of.
-struct MeasuredBuild {
-  BuildMixes mixes;
-  std::uint64_t listed = 0;
-  std::uint64_t overlaps = 0;
-  std::uint64_t children = 0;
-};
-
-/// Splits every branch of the tree once more, with the counting scalar. The mean `listed` is over the
-/// primitives that need no overlap test; what the others take beyond that is divided among their overlap
-/// tests, so that means times numbers give the operations counted.
-[[nodiscard]] MeasuredBuild measure_build_mixes(const accel::Octree& octree);
 
 /// Compute cycles of the parts of a split. They include the fetching and storing of a record's words, but not
 /// waiting for memory.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/joined.h"
 #include "sim/mapped.h"
 #include "sim/nearest.h"
 #include "studies/cli/command_tree.h"
@@ -14,15 +15,6 @@
 namespace marti::studies::cli {
 
 namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += i == 0 ? "" : i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 bool looks_like_a_file(std::string_view word) { return word.ends_with(".toml"); }
 
@@ -50,7 +42,7 @@ Reached reached_by(const CLI::App& app, std::span<const std::string> words) {
 std::string no_subcommand(const Reached& reached) {
   const std::vector<std::string> names = sim::mapped(
       subcommands_of(*reached.command), [&](const CLI::App* command) { return command->get_name(); });
-  const std::string there_are = "there are " + listed(names);
+  const std::string there_are = "there are " + sim::listed(names);
   const std::string where = reached.name.empty() ? "" : reached.name + ": ";
   if (reached.rest.empty()) {
     return where + "which command? " + there_are + "; --help says what they do";
@@ -94,7 +86,7 @@ std::string unexpected(const Reached& reached, const std::string& word) {
   }
   if (word.starts_with('-')) {
     const std::string name = word.substr(0, word.find('='));
-    return text + sim::did_you_mean(name, names) + "; the options are " + listed(names);
+    return text + sim::did_you_mean(name, names) + "; the options are " + sim::listed(names);
   }
   if (sets_keys && word.find('=') != std::string::npos) {
     return text + "; a key is set by: --set " + word;

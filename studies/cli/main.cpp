@@ -87,6 +87,31 @@ void print(const std::string& text) {
   }
 }
 
+// The options that several commands have.
+
+CLI::Option* add_file(CLI::App* command, std::string& file) {
+  return command->add_option("CONFIG", file, "configuration file (TOML)")->type_name("FILE.toml");
+}
+
+void add_assignments(CLI::App* command, std::vector<std::string>& assignments) {
+  command->add_option("--set", assignments, "key=value, overrides the file; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_directory(CLI::App* command, const std::string& option, std::string& directory,
+                           const std::string& what) {
+  return command->add_option(option, directory, what)->type_name("DIR")->check([](const std::string& name) {
+    return name.empty() ? "the name of a directory must not be empty" : "";
+  });
+}
+
+void add_page(CLI::App* command, std::string& file, const std::string& what) {
+  command->add_option("-o,--output", file, what)->type_name("FILE.html")->check([](const std::string& name) {
+    return name.empty() ? "the name of a file must not be empty" : "";
+  });
+}
+
 struct RunArguments {
   std::string config;
   std::vector<std::string> assignments;
@@ -173,14 +198,6 @@ struct StudyArguments {
   std::string directory;
 };
 
-std::string no_empty_directory(const std::string& name) {
-  return name.empty() ? "the name of a directory must not be empty" : "";
-}
-
-std::string no_empty_file(const std::string& name) {
-  return name.empty() ? "the name of a file must not be empty" : "";
-}
-
 // Runs a study; without an output directory it only prints. A fault of the program that the study finds is
 // thrown as InternalError, once all files are written.
 template <class Study>
@@ -224,40 +241,26 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
 void add_study_commands(CLI::App& app, StudyArguments& arguments) {
   CLI::App* study = app.add_subcommand("study", "Runs a study: many machines, tables and charts");
   study->require_subcommand(1);
-  CLI::App* operations =
-      study->add_subcommand("operations", "Counts the operations of every walk, a step and a ray");
-  CLI::App* paper = study->add_subcommand("paper", "The tables and figures of the paper of 1992");
-  CLI::App* frames =
-      study->add_subcommand("frames", "The cycle \"build, render\" of each frame of an animated scene");
-  CLI::App* schemes =
-      study->add_subcommand("schemes", "Parallel schemes on one scene: how they grow, and what limits them");
-  CLI::App* error = study->add_subcommand(
-      "error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper");
-  CLI::App* stability = study->add_subcommand(
-      "stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails");
-  for (CLI::App* command : {operations, paper, frames, schemes, error, stability}) {
-    CLI::Option* config =
-        command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->type_name("FILE.toml");
-    CLI::Option* directory =
-        command->add_option("-o,--output", arguments.directory, "directory for tables, charts and report")
-            ->type_name("DIR")
-            ->check(no_empty_directory);
-    config->required(command != operations && command != stability);
-    directory->required(command != operations && command != stability);
-    command->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-  }
-  operations->callback([&] { run_study(arguments, run::run_schema(), operations::run_operations); });
-  paper->callback([&] { run_study(arguments, paper::paper_schema(), paper::run_paper); });
-  frames->callback([&] { run_study(arguments, run::run_schema(), frames::run_frames); });
-  schemes->callback([&] { run_study(arguments, schemes::schemes_schema(), schemes::run_schemes); });
-  error->callback([&] { run_study(arguments, error::error_schema(), error::run_error); });
-  stability->callback([&] {
-    run_study(arguments, stability::stability_schema(), [](sim::Config& config, sim::WorkMeter* meter) {
-      return stability::run_stability(config, meter);
-    });
-  });
+  const auto add = [&](const char* name, const char* what, bool needs_file, sim::Schema (*schema)(),
+                       tables::StudyOutput (*run)(sim::Config&, sim::WorkMeter*)) {
+    CLI::App* command = study->add_subcommand(name, what);
+    add_file(command, arguments.config)->required(needs_file);
+    add_directory(command, "-o,--output", arguments.directory, "directory for tables, charts and report")
+        ->required(needs_file);
+    add_assignments(command, arguments.assignments);
+    command->callback([&arguments, schema, run] { run_study(arguments, schema(), run); });
+  };
+  add("operations", "Counts the operations of every walk, a step and a ray", false, run::run_schema,
+      operations::run_operations);
+  add("paper", "The tables and figures of the paper of 1992", true, paper::paper_schema, paper::run_paper);
+  add("frames", "The cycle \"build, render\" of each frame of an animated scene", true, run::run_schema,
+      frames::run_frames);
+  add("schemes", "Parallel schemes on one scene: how they grow, and what limits them", true,
+      schemes::schemes_schema, schemes::run_schemes);
+  add("error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper", true,
+      error::error_schema, error::run_error);
+  add("stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails", false,
+      stability::stability_schema, stability::run_stability);
 }
 
 void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
@@ -265,12 +268,8 @@ void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
       app.add_subcommand("sweep",
                          "Times every machine of a configuration's [sweep] or of axes given here; "
                          "goes on where it was");
-  sweep->add_option("CONFIG", arguments.config, "configuration file (TOML)")
-      ->type_name("FILE.toml")
-      ->required();
-  sweep->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_file(sweep, arguments.config)->required();
+  add_assignments(sweep, arguments.assignments);
   sweep
       ->add_option(
           "--axis", arguments.axes,
@@ -278,9 +277,7 @@ void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
           "of the file; may be repeated")
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
-  sweep->add_option("-o,--output", arguments.directory, "directory for results.sqlite and points.csv")
-      ->type_name("DIR")
-      ->check(no_empty_directory);
+  add_directory(sweep, "-o,--output", arguments.directory, "directory for results.sqlite and points.csv");
   sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
       ->type_name("N")
       ->check(CLI::Range(0, 4096));
@@ -309,15 +306,9 @@ struct TraceArguments {
 
 void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   CLI::App* trace = app.add_subcommand("trace", "Writes each node's references, for other cache simulators");
-  trace->add_option("CONFIG", arguments.config, "configuration file (TOML)")
-      ->type_name("FILE.toml")
-      ->required();
-  trace->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  trace->add_option("-o,--output", arguments.directory, "directory for node-00000.din and so on")
-      ->type_name("DIR")
-      ->check(no_empty_directory)
+  add_file(trace, arguments.config)->required();
+  add_assignments(trace, arguments.assignments);
+  add_directory(trace, "-o,--output", arguments.directory, "directory for node-00000.din and so on")
       ->required();
   trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
       ->check(CLI::IsMember({"din"}));
@@ -368,9 +359,7 @@ void add_compare_command(CLI::App& app, CompareArguments& arguments) {
   compare->add_option("B", arguments.b, "what A is compared with, likewise")->type_name("RESULT")->required();
   compare->add_flag("--json", arguments.options.json, "print the differences as JSON");
   compare->add_flag("--all", arguments.options.all, "all differences, and what is equal");
-  compare->add_option("-o,--output", arguments.page, "also one HTML page: the verdict, charts, tables")
-      ->type_name("FILE.html")
-      ->check(no_empty_file);
+  add_page(compare, arguments.page, "also one HTML page: the verdict, charts, tables");
   compare->callback([&] { compare_command(arguments); });
 }
 
@@ -382,14 +371,8 @@ void add_report_command(CLI::App& app, report::ReportArguments& arguments) {
                    "directory of a run, a sweep or a study; DIR:N for point N of a sweep")
       ->type_name("DIR")
       ->required();
-  report
-      ->add_option("-o,--output", arguments.output,
-                   "the page; DIR/report.html or DIR/point-N.html if not given")
-      ->type_name("FILE.html")
-      ->check(no_empty_file);
-  report->add_option("--plots", arguments.plots, "directory for every chart as SVG and CSV")
-      ->type_name("DIR")
-      ->check(no_empty_directory);
+  add_page(report, arguments.output, "the page; DIR/report.html or DIR/point-N.html if not given");
+  add_directory(report, "--plots", arguments.plots, "directory for every chart as SVG and CSV");
   report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
   report
       ->add_option("--budget", arguments.budget,
@@ -402,12 +385,8 @@ void add_explore_command(CLI::App& app, explore::ExploreArguments& arguments) {
   CLI::App* explore = app.add_subcommand(
       "explore",
       "A page on this computer: every setting of a machine is a control, simulated as it is moved");
-  explore->add_option("CONFIG", arguments.config, "configuration file (TOML)")
-      ->type_name("FILE.toml")
-      ->required();
-  explore->add_option("--set", arguments.assignments, "key=value, overrides the file; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_file(explore, arguments.config)->required();
+  add_assignments(explore, arguments.assignments);
   explore->add_option("--port", arguments.port, "of 127.0.0.1; 0: a free one")
       ->type_name("N")
       ->check(CLI::Range(0, 65535));
@@ -503,16 +482,10 @@ int parse_and_run(int argc, char** argv) {
 
   RunArguments run_arguments;
   CLI::App* run = app.add_subcommand("run", "Runs one machine: image, statistics, summary");
-  run->add_option("CONFIG", run_arguments.config, "configuration file (TOML)")
-      ->type_name("FILE.toml")
-      ->required();
-  run->add_option("--set", run_arguments.assignments, "key=value, overrides the file; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  run->add_option("-o,--output", run_arguments.directory,
-                  "directory for image.exr, image.png, result.json and what is recorded")
-      ->type_name("DIR")
-      ->check(no_empty_directory);
+  add_file(run, run_arguments.config)->required();
+  add_assignments(run, run_arguments.assignments);
+  add_directory(run, "-o,--output", run_arguments.directory,
+                "directory for image.exr, image.png, result.json and what is recorded");
   run->add_flag("--json", run_arguments.json, "print the result as JSON instead of the summary");
   run->add_option("--within", run_arguments.within,
                   "accept an estimate whose error is at most this, as \"2 %\"")

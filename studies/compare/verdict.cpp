@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "sim/joined.h"
 #include "studies/compare/compare_text.h"
 #include "studies/compare/frames.h"
 #include "studies/report/model/answer_text.h"
@@ -29,14 +30,6 @@ std::optional<double> figure(const ComparedResult& result, const std::string& na
   return at == result.figures.end() ? std::nullopt : tables::number_of(at->second);
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  }
-  return text;
-}
-
 // "cache.size is 16 KiB in A and 4 KiB in B".
 std::string settings_sentence(const std::vector<Difference>& settings) {
   std::vector<std::string> parts;
@@ -53,7 +46,7 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
   if (parts.size() < settings.size()) {
     parts.push_back(fmt::format("{} more", settings.size() - parts.size()));
   }
-  return joined(parts);
+  return sim::listed(parts);
 }
 
 // Where the activities pull in both directions: the largest changes of either.
@@ -66,7 +59,7 @@ std::string both_ways(const ComparedPair& pair) {
     parts.push_back(fmt::format("{} ({})", report::words(time.activity),
                                 tables::signed_seconds(std::llround(time.change))));
   }
-  return "What changes most, as the mean of a node: " + joined(parts) + ".";
+  return "What changes most, as the mean of a node: " + sim::listed(parts) + ".";
 }
 
 // Which activities the change of the frame time comes from.
@@ -97,7 +90,7 @@ std::string why(const ComparedPair& pair, std::int64_t change) {
     return {};
   }
   return fmt::format("Of the {} {}, {}, as the mean of a node.", tables::seconds(std::abs(change)),
-                     change > 0 ? "more" : "less", joined(parts));
+                     change > 0 ? "more" : "less", sim::listed(parts));
 }
 
 std::string misses_sentence(const ComparedPair& pair) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "sim/joined.h"
+#include "sim/mapped.h"
 #include "studies/figures/derived_figures.h"
 
 namespace marti::studies::explore {
@@ -15,11 +17,10 @@ constexpr std::array<std::string_view, 7> shown_figures = {
 
 std::string name_of(Settings settings) {
   std::ranges::sort(settings);
-  std::string name;
-  for (const auto& [key, value] : settings) {
-    name += (name.empty() ? "" : ", ") + key + " = " + value;
-  }
-  return name.empty() ? "as the configuration" : name;
+  return settings.empty() ? "as the configuration"
+                          : sim::joined(sim::mapped(settings, [](const auto& setting) {
+                              return setting.first + " = " + setting.second;
+                            }));
 }
 
 }  // namespace

@@ -119,8 +119,15 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   }
   tables::Table scenes = scene_table(config, paper, trees);
 
-  const std::vector<TracedRun> runs =
-      sim::mapped(paper.runs, [&](const PaperRun& run) { return trace_run(paper, run); });
+  // The work logs of all runs are kept, so each frame has the memory that those before it leave.
+  std::vector<TracedRun> runs;
+  PaperConfig beside = paper;
+  for (const PaperRun& run : paper.runs) {
+    runs.push_back(trace_run(beside, run));
+    beside.frame.memory.take(runs.back().totals.bytes, "the work logs of all runs take",
+                             "name fewer runs in paper.run_scenes, or lower image.width");
+    keys::give_memory(beside.frame.memory, beside.frame.structure_options);
+  }
   const std::vector<RunOutcomes> outcomes = time_initial_levels(paper, runs);
   const std::vector<TaskTimes> times =
       sim::mapped(outcomes, [&](const RunOutcomes& run) { return tasks_of(run.whole().time); });

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/joined.h"
 #include "sim/nearest.h"
 
 namespace marti::studies::run {
@@ -25,12 +26,8 @@ KeptItems::KeptItems(std::span<const std::string> names) {
     if (at == plan_item_names.end()) {
       std::vector<std::string> known(plan_item_names.begin(), plan_item_names.end());
       known.emplace_back(everything);
-      std::string message = "--keep: the plan has no item \"" + name + "\"" + sim::did_you_mean(name, known);
-      message += "; it has ";
-      for (std::size_t i = 0; i < known.size(); ++i) {
-        message += (i == 0 ? "" : i + 1 == known.size() ? " and " : ", ") + known[i];
-      }
-      throw sim::UserError(message);
+      throw sim::UserError("--keep: the plan has no item \"" + name + "\"" + sim::did_you_mean(name, known) +
+                           "; it has " + sim::listed(known));
     }
     bits_.set(static_cast<std::size_t>(at - plan_item_names.begin()));
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/joined.h"
 #include "sim/mapped.h"
 #include "studies/sweep/store/store_schema.h"
 #include "studies/version.h"
@@ -169,12 +170,8 @@ void enter_points(tables::SqliteConnection& connection, const SweepPlan& plan,
 void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& plan) {
   connection.execute("DELETE FROM provenance");
   tables::SqliteStatement insert(connection, tables::insert_sql("provenance", 2));
-  std::string axes;
-  for (const std::string& axis : plan.axes) {
-    axes += (axes.empty() ? "" : ", ") + axis;
-  }
   insert.run({"version", version});
-  insert.run({"axes", axes});
+  insert.run({"axes", sim::joined(plan.axes)});
   insert.run({"points", std::to_string(plan.points.size())});
   insert.run({"filtered_out", std::to_string(plan.filtered_out)});
   insert.run({"machines", std::to_string(plan.machines.size())});

@@ -32,6 +32,7 @@ using nlohmann::json;
 using test::says;
 using testing::corner;
 using testing::GltfFile;
+using testing::load_gltf;
 using testing::RandomMesh;
 using testing::SceneFolder;
 

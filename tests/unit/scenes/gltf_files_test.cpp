@@ -10,12 +10,14 @@
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/scenes/gltf_file.h"
+#include "tests/unit/scenes/loaded_scene.h"
 
 namespace marti::scenes {
 namespace {
 
 using test::says;
 using testing::GltfFile;
+using testing::load_gltf;
 
 std::string refusal(const std::filesystem::path& path, const FileOptions& options = {},
                     const ImageDecoder& decode = {}) {

@@ -8,6 +8,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "gltf_file.h"
+#include "loaded_scene.h"
 #include "scenes/gltf.h"
 #include "scenes/gltf_export.h"
 #include "scenes/procedural.h"
@@ -22,6 +23,7 @@ using nlohmann::json;
 using testing::drop;
 using testing::Fault;
 using testing::GltfFile;
+using testing::load_gltf;
 using testing::put;
 using testing::put_accessor;
 using testing::put_positions;

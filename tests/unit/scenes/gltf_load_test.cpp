@@ -20,6 +20,7 @@ namespace {
 using testing::corner;
 using testing::GltfFile;
 using testing::has_note;
+using testing::load_gltf;
 
 class GltfLoad : public ::testing::Test {
  protected:

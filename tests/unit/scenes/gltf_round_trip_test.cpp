@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "gltf_file.h"
+#include "loaded_scene.h"
 #include "scenes/gltf_export.h"
 #include "scenes/open.h"
 #include "scenes/procedural.h"
@@ -15,6 +16,8 @@
 
 namespace marti::scenes {
 namespace {
+
+using testing::load_gltf;
 
 // A codec without loss for the tests: sizes, then texels.
 std::vector<std::byte> encode(const Texture& texture) {
