@@ -1,10 +1,9 @@
-#include "studies/helps/cache_resources.h"
-
 #include <algorithm>
 #include <bit>
 #include <string_view>
 
 #include "studies/helps/better.h"
+#include "studies/helps/resource_lists.h"
 
 namespace marti::studies::helps {
 

@@ -1,8 +1,8 @@
-#include "studies/helps/dram_resources.h"
-
 #include <algorithm>
 #include <string>
 #include <string_view>
+
+#include "studies/helps/resource_lists.h"
 
 namespace marti::studies::helps {
 

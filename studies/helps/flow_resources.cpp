@@ -1,11 +1,10 @@
-#include "studies/helps/flow_resources.h"
-
 #include <array>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "studies/helps/better.h"
+#include "studies/helps/resource_lists.h"
 
 namespace marti::studies::helps {
 

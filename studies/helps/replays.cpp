@@ -61,7 +61,8 @@ const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& ma
 std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines,
                                  std::uint64_t most_bytes) {
   const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
-  const std::uint64_t at_a_time = std::clamp<std::uint64_t>(shared.memory.left() / std::max<std::uint64_t>(1, most_bytes), 1, cores);
+  const std::uint64_t at_a_time =
+      std::clamp<std::uint64_t>(shared.memory.left() / std::max<std::uint64_t>(1, most_bytes), 1, cores);
   std::vector<Replayed> replayed(machines.size());
   tbb::task_arena arena(static_cast<int>(at_a_time));
   arena.execute([&] {

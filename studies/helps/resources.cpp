@@ -6,9 +6,7 @@
 #include <variant>
 
 #include "studies/helps/better.h"
-#include "studies/helps/cache_resources.h"
-#include "studies/helps/dram_resources.h"
-#include "studies/helps/flow_resources.h"
+#include "studies/helps/resource_lists.h"
 
 namespace marti::studies::helps {
 

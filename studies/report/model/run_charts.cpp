@@ -183,6 +183,27 @@ tables::Table visits_table(const tables::RunJson& run) {
   return table;
 }
 
+tables::Table path_table(const tables::RunJson& run) {
+  tables::Table table("run_path", "The critical path",
+                      {tables::text_column("what", "what is done, see docs/model.md, The critical path"),
+                       tables::integer_column("ps", "ps", "time of it on the path"),
+                       tables::real_column("share", "fraction", "of the frame time")});
+  const tables::RunJson parts = run.part("machine.critical_path.time_ps");
+  if (!parts.json().is_object()) {
+    return table;
+  }
+  double all = 0.0;
+  for (const auto& [name, value] : parts.json().items()) {
+    all += parts.count(name);
+  }
+  for (const auto& [name, value] : parts.json().items()) {
+    if (const std::int64_t ps = whole(parts, name); ps > 0) {
+      table.add_row({name, ps, static_cast<double>(ps) / all});
+    }
+  }
+  return table;
+}
+
 struct LevelReferences {
   std::int64_t references = 0;
   std::int64_t misses = 0;
@@ -349,6 +370,8 @@ void add_all(const tables::RunJson& run, ReportData& report) {
   add(report, tree_table(run));
   add(report, level_memory_table(run));
   add(report, memory_table(run));
+  add(report, path_table(run),
+      "The chain of work that sets the end of the frame; the parts add up to the frame.");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The charts of a run: where the time goes, references and hit ratios, levels and memory, waits, nodes.
+// The charts of a run: where the time goes, references and hit ratios, levels and memory, waits, nodes, the
+// critical path.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,6 @@
 #include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/model/helps_table.h"
-#include "studies/report/model/path_chart.h"
 #include "studies/report/model/run_answer.h"
 #include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
@@ -189,7 +188,6 @@ ReportData read_run_report(const fs::path& directory) {
 ReportData report_of_run(const tables::RunJson& run) {
   ReportData report = machine_report(run, "one node");
   report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
-  add_path_chart(run, report);
   if (tables::Table helps = helps_table(run); !helps.rows().empty()) {
     report.tables.push_back({std::move(helps), false});
   }
