@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string counting = quoted(fs::path(MARTI_SOURCE) / "configs" / "second-level.toml") + small_teapot;
+const std::string counting = shipped("second-level.toml") + small_teapot;
 
 TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
   const TemporaryDirectory directory;
@@ -21,7 +21,7 @@ TEST(CacheCommand, WhatIsCountedAddsUpInTheResultAndInItsTable) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* line : {"second level", "compulsory", "sharing ", "where misses and waits come from",
                            "shadow rays", "attribution.csv"}) {
-    EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+    EXPECT_TRUE(says(outcome, line)) << line;
   }
   const auto result = nlohmann::json::parse(read(directory.path() / "out" / "result.json"));
   const auto figure = [&](const std::string& name) {
@@ -63,7 +63,7 @@ TEST(CacheCommand, TheWorkingSetIsThatOfTheMachineAtItsOwnSize) {
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     for (const char* line :
          {"working set ", "2 x compulsory with", "working_set.csv", "working_set.vl.json"}) {
-      EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\n" << outcome.output;
+      EXPECT_TRUE(says(outcome, line)) << line;
     }
     const auto result = nlohmann::json::parse(read(out / "result.json"));
     const auto& machine = result["machine"];

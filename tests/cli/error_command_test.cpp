@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 // The shipped study with scenes and machines that take no time.
 const std::string small_errors =
-    quoted(fs::path(MARTI_SOURCE) / "configs" / "error.toml") +
+    shipped("error.toml") +
     " --set error.sides=[16,64] --set packets.width=2 --set packets.height=2 --set "
     "'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
     " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
@@ -24,21 +24,13 @@ const std::string small_errors =
 
 TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
   const TemporaryDirectory directory;
-  const fs::path a = directory.path() / "a";
-  const fs::path b = directory.path() / "b";
-  const Outcome outcome = marti("study error " + small_errors + " -o " + quoted(a));
-  ASSERT_EQ(outcome.status, 0) << outcome.output;
-  for (const char* text : {"16 windows", "32 windows", "all nodes walked", "node counts, linear",
-                           "paper's formula", "The fastest method for an error", "results.sqlite"}) {
-    EXPECT_NE(outcome.output.find(text), std::string::npos) << text;
-  }
-  ASSERT_EQ(marti("study error " + small_errors + " -o " + quoted(b)).status, 0);
-  EXPECT_GE(expect_same_files(a, b), 7);
-  for (const char* name : {"host_error_time.csv", "error_measured.csv", "host_error_front.vl.json"}) {
-    EXPECT_TRUE(fs::exists(a / name)) << name;
-  }
+  EXPECT_GE(expect_study("error " + small_errors, directory.path(),
+                         {"16 windows", "32 windows", "all nodes walked", "node counts, linear",
+                          "paper's formula", "The fastest method for an error", "results.sqlite"},
+                         {"host_error_time.csv", "error_measured.csv", "host_error_front.vl.json"}),
+            7);
   // Exact replay has no error.
-  const std::string methods = read(a / "error_methods.csv");
+  const std::string methods = read(directory.path() / "a" / "error_methods.csv");
   EXPECT_NE(methods.find("\nexact,replay,36,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos)
       << methods;
 }
@@ -65,7 +57,7 @@ TEST(StudyError, WrongInputIsTwo) {
 }
 
 const std::string machine =
-    quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+    shipped("marti.toml") +
     " --set scene.source=teapot:2 --set image.width=448 --set image.height=448 --no-what-helps ";
 
 TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
@@ -73,21 +65,21 @@ TEST(RunWithin, GivesAnEstimateWithErrorBarsOrAnExactRun) {
   ASSERT_EQ(wide.status, 0) << wide.output;
   for (const char* text : {"left out ", "windows", "estimate ", "not exact", "+- ", "frame time", "speed-up",
                            "misses", "mean wait"}) {
-    EXPECT_NE(wide.output.find(text), std::string::npos) << text << "\n" << wide.output;
+    EXPECT_TRUE(says(wide, text)) << text;
   }
-  EXPECT_EQ(wide.output.find("bounds "), std::string::npos);
+  EXPECT_FALSE(says(wide, "bounds "));
   EXPECT_EQ(
       marti("run " + machine + "--within 0.6").output.find("asked for within 60 %") == std::string::npos,
       false);
   const Outcome none = marti("run " + machine + "--within 0%");
   ASSERT_EQ(none.status, 0) << none.output;
-  EXPECT_NE(none.output.find("exact replay, no error"), std::string::npos);
+  EXPECT_TRUE(says(none, "exact replay, no error"));
   // Except for the reason, the output equals that without --within.
   const std::string plain = marti("run " + machine).output;
   EXPECT_EQ(none.output.substr(0, plain.size()), plain);
   const Outcome outside = marti("run " + machine + "--within 5% --set machine.scheme=space");
   EXPECT_EQ(outside.status, 0) << outside.output;
-  EXPECT_NE(outside.output.find("exact replay, no error: "), std::string::npos) << outside.output;
+  EXPECT_TRUE(says(outside, "exact replay, no error: "));
 }
 
 TEST(RunWithin, GivesTheSameToPrograms) {

@@ -15,10 +15,8 @@
 namespace marti::test {
 namespace {
 
-const std::string marti_toml = quoted(std::filesystem::path(MARTI_SOURCE) / "configs/marti.toml");
-
 TEST(ExploreCommand, PrintsItsAddressAndEndsAfterItsTime) {
-  const Outcome outcome = marti("explore " + marti_toml + small_teapot + " --for 0.05");
+  const Outcome outcome = marti("explore " + small_run + " --for 0.05");
   EXPECT_EQ(outcome.status, 0);
   ASSERT_EQ(outcome.output.find("http://127.0.0.1:"), 0U) << outcome.output;
   // The token and a line end; nothing else is printed.
@@ -29,7 +27,7 @@ TEST(ExploreCommand, PrintsItsAddressAndEndsAfterItsTime) {
 
 TEST(ExploreCommand, ATimeThatIsNoNumberIsRefused) {
   for (const std::string time : {"nan", "inf", "-1"}) {
-    const Outcome outcome = marti("explore " + marti_toml + small_teapot + " --for " + time);
+    const Outcome outcome = marti("explore " + small_run + " --for " + time);
     EXPECT_EQ(outcome.status, 2) << time;
     EXPECT_TRUE(outcome.output.find("--for") != std::string::npos) << outcome.output;
   }
@@ -51,9 +49,9 @@ TEST(ExploreCommand, ASignalEndsIt) {
 
 TEST(ExploreCommand, RefusesWhatItCannotShow) {
   expect_refused("explore none.toml", "none.toml");
-  expect_refused("explore " + marti_toml + small_teapot + " --set cache.size=1B", "cache.size");
-  expect_refused("explore " + marti_toml + " --port 70000", "70000");
-  expect_refused("explore " + marti_toml + " --set frames.count=2", "frames.count");
+  expect_refused("explore " + small_run + " --set cache.size=1B", "cache.size");
+  expect_refused("explore " + shipped("marti.toml") + " --port 70000", "70000");
+  expect_refused("explore " + shipped("marti.toml") + " --set frames.count=2", "frames.count");
 }
 
 }  // namespace

@@ -13,10 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsStagesAre) {
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
-  const fs::path image = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
-  const nlohmann::json moving = printed_json("run " + quoted(config) + small_teapot);
-  const nlohmann::json whole = printed_json("run " + quoted(image) + small_teapot);
+  const nlohmann::json moving = printed_json("run " + shipped("pipeline.toml") + small_teapot);
+  const nlohmann::json whole = printed_json("run " + small_run);
   EXPECT_EQ(moving["figures"]["frame"], whole["figures"]["frame"]);
   const nlohmann::json& machine = moving["machine"];
   EXPECT_EQ(machine["scheme"], "pipeline");
@@ -39,9 +37,8 @@ TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsSt
 }
 
 TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "pipeline.toml";
   const auto machine_with = [&](const std::string& stages) {
-    return printed_json("run " + quoted(config) + small_teapot + stages);
+    return printed_json("run " + shipped("pipeline.toml") + small_teapot + stages);
   };
   const nlohmann::json few =
       machine_with(" --set pipeline.search=12 --set pipeline.nearest=3 --set pipeline.shade=1");
@@ -60,7 +57,7 @@ TEST(MachineCommand, MoreNodesOfItsSlowestStageHelpAPipeline) {
 // Steps with units, with several keys and with key values that follow from others.
 TEST(MachineCommand, AMeasuredStepIsReachedByItsArguments) {
   for (const char* name : {"marti.toml", "distributed.toml", "pipeline.toml"}) {
-    const std::string run = "run " + quoted(fs::path(MARTI_SOURCE) / "configs" / name) + small_teapot;
+    const std::string run = "run " + shipped(name) + small_teapot;
     const nlohmann::json before = printed_json(run + " --what-helps");
     for (const nlohmann::json& resource : before["machine"]["what_helps"]["resources"]) {
       const nlohmann::json& step = resource["step"];
@@ -80,8 +77,7 @@ TEST(MachineCommand, AMeasuredStepIsReachedByItsArguments) {
 // Energy is worked out for every scheme, adds up, and changes nothing else.
 TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
   for (const char* config : {"marti.toml", "pipeline.toml", "space.toml", "distributed.toml"}) {
-    const std::string arguments =
-        "run --no-what-helps " + quoted(fs::path(MARTI_SOURCE) / "configs" / config) + small_teapot;
+    const std::string arguments = "run --no-what-helps " + shipped(config) + small_teapot;
     const nlohmann::json without = printed_json(arguments)["figures"]["machine"];
     nlohmann::json with = printed_json(arguments + " --set energy.preset=22nm")["figures"]["machine"];
     std::int64_t sum = 0;
@@ -102,35 +98,10 @@ TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
     }
     EXPECT_EQ(with, without) << config;
   }
-  const std::string arguments =
-      "run --no-what-helps " + quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
+  const std::string arguments = "run --no-what-helps " + small_run;
   const Outcome summary = marti(arguments + " --set energy.preset=22nm");
-  EXPECT_TRUE(says(summary, "\nenergy        ")) << summary.output;
+  EXPECT_TRUE(says(summary, "\nenergy        "));
   EXPECT_FALSE(says(marti(arguments), "\nenergy        "));
-}
-
-TEST(MachineCommand, ADistributedDatabaseReportsItsMessagesAndMemories) {
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "distributed.toml";
-  for (const char* kind : {"mesh", "ideal"}) {
-    const std::string options = small_teapot + std::string(" --set network.kind=") + kind;
-    const nlohmann::json result = printed_json("run " + quoted(config) + options);
-    const nlohmann::json& machine = result["machine"];
-    const nlohmann::json& figures = result["figures"]["machine"];
-    const nlohmann::json& cluster = machine["per_cluster"][0];
-    const nlohmann::json& distributed = cluster["distributed"];
-    const auto count = [&](const char* name) { return distributed[name].get<std::int64_t>(); };
-    EXPECT_EQ(cluster["banks"].size(), 16U);
-    EXPECT_EQ(cluster["interconnect"]["reads"].get<std::int64_t>(),
-              count("local_reads") + count("remote_reads"));
-    EXPECT_EQ(count("local_writes") + count("remote_writes"), 24 * 16);
-    EXPECT_EQ(distributed["network"]["messages"].get<std::int64_t>(),
-              2 * count("remote_reads") + count("remote_writes"));
-    EXPECT_EQ(figures.contains("interconnect_utilisation"), kind != std::string("ideal"));
-    EXPECT_EQ(figures["database_copies"], 1);
-    const Outcome summary = marti("run " + quoted(config) + options);
-    EXPECT_NE(summary.output.find("spread over 16 nodes"), std::string::npos) << summary.output;
-    EXPECT_NE(summary.output.find("\nmemories "), std::string::npos) << summary.output;
-  }
 }
 
 }  // namespace

@@ -16,17 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string observed_run = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
-
 TEST(ObserveCommand, ARunRecordsATimelineAndHeatMaps) {
   const TemporaryDirectory directory;
   const Outcome outcome =
-      marti("run " + observed_run + " --set record.timeline=true --set record.heat_maps=true -o " +
+      marti("run " + small_run + " --set record.timeline=true --set record.heat_maps=true -o " +
             quoted(directory.path() / "out"));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char* line :
        {"lost speed-up", "extra misses", "bounds ", "predicted ", "heat map ", "timeline "}) {
-    EXPECT_NE(outcome.output.find(line), std::string::npos) << line;
+    EXPECT_TRUE(says(outcome, line)) << line;
   }
   for (const char* name :
        {"timeline.json", "heat.exr", "heat-cycles.png", "heat-misses.png", "heat-waits.png"}) {
@@ -50,21 +48,21 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
   const TemporaryDirectory directory;
   const fs::path plain = directory.path() / "plain";
   const fs::path watched = directory.path() / "watched";
-  ASSERT_EQ(marti("run " + observed_run + " -o " + quoted(plain)).status, 0);
-  ASSERT_EQ(marti("run " + observed_run + " --set record.heat_maps=true -o " + quoted(watched)).status, 0);
+  ASSERT_EQ(marti("run " + small_run + " -o " + quoted(plain)).status, 0);
+  ASSERT_EQ(marti("run " + small_run + " --set record.heat_maps=true -o " + quoted(watched)).status, 0);
   auto a = nlohmann::json::parse(read(plain / "result.json"));
   auto b = nlohmann::json::parse(read(watched / "result.json"));
   EXPECT_EQ(a["machine"], b["machine"]);
   EXPECT_EQ(a["figures"], b["figures"]);
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
-    expect_refused("run " + observed_run + " --set " + key + "=true", "give one with -o");
+    expect_refused("run " + small_run + " --set " + key + "=true", "give one with -o");
   }
-  expect_refused("run " + observed_run + " --set record.timeline_events=5 -o " + quoted(plain),
+  expect_refused("run " + small_run + " --set record.timeline_events=5 -o " + quoted(plain),
                  "record.timeline = false");
-  expect_refused("run " + observed_run + " --set record.heat_maps=true --set image.width=32768" +
+  expect_refused("run " + small_run + " --set record.heat_maps=true --set image.width=32768" +
                      " --set image.height=32768 -o " + quoted(plain),
                  "maps of this image take about 64 GiB");
-  expect_refused("run " + observed_run +
+  expect_refused("run " + small_run +
                      " --set record.timeline=true --set record.timeline_from=2ms"
                      " --set record.timeline_to=1ms -o " +
                      quoted(plain),
@@ -73,10 +71,8 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
 
 TEST(ObserveCommand, ACriticalPathAddsUpToTheFrameAndChangesNothingElse) {
   const std::string on = " --set record.critical_path=true";
-  const auto of_config = [](const std::string& name) {
-    return quoted(fs::path(MARTI_SOURCE) / "configs" / name) + small_teapot;
-  };
-  for (const std::string& machine : {observed_run, of_config("pipeline.toml"), of_config("space.toml")}) {
+  const auto of_config = [](const std::string& name) { return shipped(name) + small_teapot; };
+  for (const std::string& machine : {small_run, of_config("pipeline.toml"), of_config("space.toml")}) {
     const nlohmann::json a = printed_json("run " + machine);
     nlohmann::json b = printed_json("run " + machine + on);
     const nlohmann::json found = b["machine"]["critical_path"];
@@ -96,10 +92,10 @@ TEST(ObserveCommand, ACriticalPathAddsUpToTheFrameAndChangesNothingElse) {
     b["config"] = a["config"];
     EXPECT_EQ(a, b) << machine;
   }
-  const Outcome summary = marti("run " + observed_run + on);
+  const Outcome summary = marti("run " + small_run + on);
   EXPECT_EQ(summary.status, 0) << summary.output;
-  EXPECT_NE(summary.output.find("critical path "), std::string::npos) << summary.output;
-  expect_refused("run " + observed_run + on + " --within 2%", "record.critical_path");
+  EXPECT_TRUE(says(summary, "critical path "));
+  expect_refused("run " + small_run + on + " --within 2%", "record.critical_path");
 }
 
 struct Counts {
@@ -137,8 +133,7 @@ Counts simulate(const fs::path& file, std::uint64_t size, std::uint64_t line, st
 
 TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
   const TemporaryDirectory directory;
-  const std::string options =
-      observed_run + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
+  const std::string options = small_run + " --set machine.nodes=3 --set cache.size=2KiB --set cache.ways=2";
   const nlohmann::json nodes = printed_json("run " + options)["machine"]["per_node"];
   const Outcome trace = marti("trace " + options + " --format din -o " + quoted(directory.path()));
   ASSERT_EQ(trace.status, 0) << trace.output;
@@ -152,8 +147,7 @@ TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
     EXPECT_GT(counts.misses, 0);
   }
   // The files of a machine of fewer nodes replace them all.
-  ASSERT_EQ(marti("trace " + observed_run + " --set machine.nodes=2 -o " + quoted(directory.path())).status,
-            0);
+  ASSERT_EQ(marti("trace " + small_run + " --set machine.nodes=2 -o " + quoted(directory.path())).status, 0);
   EXPECT_TRUE(fs::exists(directory.path() / "node-00001.din"));
   EXPECT_FALSE(fs::exists(directory.path() / "node-00002.din"));
 }
@@ -165,16 +159,16 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
     expect_refused("trace " + arguments + out, why);
     EXPECT_FALSE(fs::exists(directory.path() / "out"));
   };
-  refused(observed_run + " --limit 1KiB", "more than --limit = 1 KiB");
-  refused(observed_run + " --limit 5kB", "--limit");
-  refused(observed_run + " --nodes 3-16", "no node 16");
-  refused(observed_run + " --nodes \"\"", "at least one node");
-  refused(observed_run + " --format xml", "xml");
-  refused(observed_run + " --set build.sharing=shared", "build.sharing");
+  refused(small_run + " --limit 1KiB", "more than --limit = 1 KiB");
+  refused(small_run + " --limit 5kB", "--limit");
+  refused(small_run + " --nodes 3-16", "no node 16");
+  refused(small_run + " --nodes \"\"", "at least one node");
+  refused(small_run + " --format xml", "xml");
+  refused(small_run + " --set build.sharing=shared", "build.sharing");
   const Outcome full =
-      shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + observed_run + out);
+      shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + small_run + out);
   EXPECT_EQ(full.status, 2) << full.output;
-  EXPECT_NE(full.output.find("cannot be written"), std::string::npos) << full.output;
+  EXPECT_TRUE(says(full, "cannot be written"));
   EXPECT_FALSE(fs::exists(directory.path() / "out"));
 }
 
@@ -182,7 +176,7 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
 TEST(ObserveCommand, InterruptedItLeavesNoFile) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "out";
-  const std::string config = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + " -o " + quoted(out);
+  const std::string config = shipped("marti.toml") + " -o " + quoted(out);
   struct Case {
     const char* command;
     const char* signal;
@@ -195,8 +189,7 @@ TEST(ObserveCommand, InterruptedItLeavesNoFile) {
     const Outcome outcome = shell(quoted(MARTI_PROGRAM) + " " + c.command + config + " & i=0; until " +
                                   grown + " || [ $i -ge 600 ]; do sleep 0.05; i=$((i + 1)); done; kill -" +
                                   c.signal + " $!; wait $!; echo status $?");
-    EXPECT_NE(outcome.output.find("status " + std::to_string(128 + c.number)), std::string::npos)
-        << c.command << outcome.output;
+    EXPECT_TRUE(says(outcome, "status " + std::to_string(128 + c.number))) << c.command;
     EXPECT_TRUE(fs::is_empty(out)) << c.command;
   }
 }

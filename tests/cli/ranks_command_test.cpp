@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -13,8 +14,8 @@
 #include <vector>
 
 #include "tests/cli/shell.h"
+#include "tests/support/store_dump.h"
 #include "tests/support/temporary_directory.h"
-#include "tests/unit/studies/sweep_parts.h"
 
 namespace marti::test {
 namespace {
@@ -85,8 +86,7 @@ TEST_F(RankedSweep, GivesTheStoreOfOneProcess) {
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_EQ(dump(directory / "results.sqlite"), expected) << ranks << " ranks";
     EXPECT_EQ(read(directory / "points.csv"), read(at("one") / "points.csv"));
-    EXPECT_NE(outcome.output.find("timed         96 machines on 2 frames"), std::string::npos)
-        << outcome.output;
+    EXPECT_TRUE(says(outcome, "timed         96 machines on 2 frames"));
     EXPECT_EQ(
         outcome.output.find("wrote", outcome.output.find("wrote", outcome.output.find("wrote") + 1) + 1),
         std::string::npos)
@@ -152,32 +152,19 @@ TEST_F(RankedSweep, AnotherLauncherIsRefused) {
   const Outcome outcome = shell("SLURM_STEP_NUM_TASKS=3 ASAN_OPTIONS=detect_leaks=0 " +
                                 quoted(MARTI_PROGRAM) + " " + sweep(at("a")));
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_NE(outcome.output.find("3 processes were started together, but this program's MPI sees 1"),
-            std::string::npos)
-      << outcome.output;
+  EXPECT_TRUE(says(outcome, "3 processes were started together, but this program's MPI sees 1"));
   EXPECT_FALSE(fs::exists(at("a")));
 }
 
 TEST_F(RankedSweep, OnlyPlans) {
   const Outcome outcome = shell(mpirun(2, "sweep --plan " + quoted(config_)));
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("96"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(says(outcome, "96"));
 }
 
 /// Results in a store that another process may be writing; 0 while there is none.
-int results_in(const fs::path& store) {
-  sqlite3* connection = nullptr;
-  sqlite3_stmt* statement = nullptr;
-  int results = 0;
-  if (sqlite3_open_v2(store.c_str(), &connection, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK &&
-      sqlite3_prepare_v2(connection, "SELECT count(*) FROM host_machines", -1, &statement, nullptr) ==
-          SQLITE_OK &&
-      sqlite3_step(statement) == SQLITE_ROW) {
-    results = sqlite3_column_int(statement, 0);
-  }
-  sqlite3_finalize(statement);
-  sqlite3_close(connection);
-  return results;
+long results_in(const fs::path& store) {
+  return fs::exists(store) ? std::max(0L, number_of(store, "SELECT COUNT(*) FROM host_machines")) : 0;
 }
 
 /// The process of that rank below `parent`; 0 when there is none.
@@ -225,12 +212,11 @@ TEST_P(KilledRank, LosesOnlyWhatWasInFlight) {
   kill(process, SIGKILL);
   ASSERT_EQ(waitpid(job, &status, 0), job);
   EXPECT_TRUE(!WIFEXITED(status) || WEXITSTATUS(status) != 0) << read(at("output"));
-  const int saved = results_in(directory / "results.sqlite");
+  const long saved = results_in(directory / "results.sqlite");
   EXPECT_GE(saved, 5);
   const Outcome rest = shell(mpirun(2, sweep(directory)));
   ASSERT_EQ(rest.status, 0) << rest.output;
-  EXPECT_NE(rest.output.find("timed         " + std::to_string(96 - saved) + " machine"), std::string::npos)
-      << rest.output;
+  EXPECT_TRUE(says(rest, "timed         " + std::to_string(96 - saved) + " machine"));
   EXPECT_EQ(dump(directory / "results.sqlite"), expected);
   for (const auto& entry : fs::directory_iterator(directory)) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();

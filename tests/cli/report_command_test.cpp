@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string small = quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") + small_teapot;
-
 const std::string sweep_text = R"([scene]
 source = "teapot:2"
 [image]
@@ -66,15 +64,15 @@ class ReportCommand : public testing::Test {
   [[nodiscard]] fs::path place(const std::string& name) const { return directory_.path() / name; }
 
   [[nodiscard]] fs::path made_run(const std::string& more = "") const {
-    return made("run", "run " + small + more);
+    return made("run", "run " + small_run + more);
   }
   [[nodiscard]] fs::path made_sweep() const {
     write(place("sweep.toml"), sweep_text);
     return made("sweep", "sweep " + quoted(place("sweep.toml")) + " --quiet");
   }
   [[nodiscard]] fs::path made_study() const {
-    return made("study", "study schemes " + quoted(fs::path(MARTI_SOURCE) / "configs" / "schemes.toml") +
-                             " --set image.width=8 --set image.height=8");
+    return made("study",
+                "study schemes " + shipped("schemes.toml") + " --set image.width=8 --set image.height=8");
   }
   /// A copy of what the command writes; it runs once for all tests.
   [[nodiscard]] fs::path made(const std::string& name, const std::string& command) const {
@@ -103,7 +101,7 @@ TEST_F(ReportCommand, ReportsARun) {
   ASSERT_EQ(made.status, 0) << made.output;
   const json result = json::parse(read(run / "result.json"));
   const std::string page = read(run / "report.html");
-  EXPECT_NE(made.output.find("wrote " + (run / "report.html").string()), std::string::npos) << made.output;
+  EXPECT_TRUE(says(made, "wrote " + (run / "report.html").string()));
   std::string helps = "What helps: " + result["machine"]["what_helps"]["sentence"].get<std::string>() + ".";
   helps.replace(helps.find("->"), 2, "-&gt;");
   EXPECT_NE(page.find(helps), std::string::npos) << helps;
@@ -140,7 +138,7 @@ TEST_F(ReportCommand, ReportsASweepWithItsModel) {
   const fs::path sweep = made_sweep();
   const Outcome made = marti("report " + quoted(sweep) + " -o " + quoted(place("page.html")));
   ASSERT_EQ(made.status, 0) << made.output;
-  EXPECT_NE(made.output.find("The fastest of 24 machines"), std::string::npos) << made.output;
+  EXPECT_TRUE(says(made, "The fastest of 24 machines"));
   const json data = data_of(place("page.html"));
   for (const char* name : {"frame_time", "speed_up", "efficiency", "cycles", "utilisation",
                            "interconnect_waits", "bank_waits", "hit_ratio_cache_size", "price", "energy"}) {
@@ -174,19 +172,17 @@ TEST_F(ReportCommand, NamesTheBestMachineWithinABudget) {
   const std::string page = " -o " + quoted(place("page.html"));
   const Outcome all = marti("report " + sweep + page + " --budget 1000");
   ASSERT_EQ(all.status, 0) << all.output;
-  EXPECT_NE(all.output.find("The fastest within a budget of 1000: "), std::string::npos) << all.output;
+  EXPECT_TRUE(says(all, "The fastest within a budget of 1000: "));
   EXPECT_EQ(data_of(place("page.html"))["explorer"]["budget"], 1000);
   const Outcome none = marti("report " + sweep + page + " --budget 0");
-  EXPECT_NE(none.output.find("No machine is within a budget of 0; the cheapest is "), std::string::npos)
-      << none.output;
+  EXPECT_TRUE(says(none, "No machine is within a budget of 0; the cheapest is "));
   const std::string before = read(place("page.html"));
   for (const char* bad : {"-1", "nan", "inf"}) {
     EXPECT_EQ(marti("report " + sweep + page + " --budget=" + bad).status, 2) << bad;
   }
   const Outcome run = marti("report " + sweep + ":1" + page + " --budget 9");
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.output.find("--budget: chooses among the machines of a sweep"), std::string::npos)
-      << run.output;
+  EXPECT_TRUE(says(run, "--budget: chooses among the machines of a sweep"));
   EXPECT_EQ(read(place("page.html")), before);
 }
 
@@ -250,8 +246,8 @@ TEST_F(ReportCommand, RefusesWhatIsNoResultAndLeavesThePageAlone) {
     write(run / "result.json", text);
     const Outcome outcome = marti("report " + quoted(run));
     EXPECT_EQ(outcome.status, 2) << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find("result.json"), std::string::npos) << outcome.output;
+    EXPECT_TRUE(says(outcome, complaint));
+    EXPECT_TRUE(says(outcome, "result.json"));
     EXPECT_EQ(read(run / "report.html"), before);
   };
   refused(result.substr(0, result.size() / 2), "is not JSON");
@@ -263,7 +259,7 @@ TEST_F(ReportCommand, TakesOnlyWhatTheRunHasWritten) {
   const fs::path run = made_run(" --set record.heat_maps=true --set count.working_set=true");
   const Outcome whole = marti("report " + quoted(run));
   ASSERT_EQ(whole.status, 0) << whole.output;
-  EXPECT_FALSE(says(whole, "left out")) << whole.output;
+  EXPECT_FALSE(says(whole, "left out"));
   // Another run's files, a link to a file of this run, and one that is gone.
   fs::copy_file(run / "heat-waits.png", run / "exact.png");
   fs::copy_file(run / "heat-waits.png", run / "image.png", fs::copy_options::overwrite_existing);
@@ -277,10 +273,10 @@ TEST_F(ReportCommand, TakesOnlyWhatTheRunHasWritten) {
   for (const char* note :
        {"exact.png is left out of this page: result.json does not name it.",
         "image.png is left out of this page: it is not the file that this run has written.",
-        "heat-cycles.png is left out of this page: ",
+        "heat-cycles.png is left out of this page: it cannot be read, or is no regular file.",
         "heat-misses.png is left out of this page: it is not there",
         "working_set.vl.json is left out of this page: it is not the file"}) {
-    EXPECT_TRUE(says(changed, note)) << note << changed.output;
+    EXPECT_TRUE(says(changed, note)) << note;
   }
   const std::string page = read(run / "report.html");
   for (const char* title : {"The image", "The exact image", "Heat map: cycles", "Heat map: misses"}) {
@@ -294,8 +290,8 @@ TEST_F(ReportCommand, RefusesDirectoriesThatHoldNoResults) {
   const auto refused = [&](const fs::path& what, const std::string& complaint) {
     const Outcome outcome = marti("report " + quoted(what));
     EXPECT_EQ(outcome.status, 2) << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
-    EXPECT_EQ(outcome.output.find("internal"), std::string::npos) << outcome.output;
+    EXPECT_TRUE(says(outcome, complaint));
+    EXPECT_FALSE(says(outcome, "internal"));
   };
   refused(place("none"), "there is no such directory");
   write(place("file"), "");
@@ -310,25 +306,11 @@ TEST_F(ReportCommand, RefusesDirectoriesThatHoldNoResults) {
   refused(place("empty"), "holds both");
 }
 
-TEST_F(ReportCommand, RefusesADamagedStore) {
-  const fs::path sweep = made_sweep();
-  const std::string store = read(sweep / "results.sqlite");
-  std::string damaged = store;
-  for (std::size_t i = 4096; i < damaged.size(); i += 3) {
-    damaged[i] = static_cast<char>(i);
-  }
-  for (const std::string& bytes : {damaged, store.substr(0, store.size() / 2)}) {
-    write(sweep / "results.sqlite", bytes);
-    expect_refused("report " + quoted(sweep), "results.sqlite");
-    EXPECT_FALSE(fs::exists(sweep / "report.html"));
-  }
-}
-
 TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
   const fs::path sweep = made_sweep();
   const Outcome made = marti("report " + quoted(fs::path(sweep.string() + ":3")));
   ASSERT_EQ(made.status, 0) << made.output;
-  EXPECT_NE(made.output.find("times as fast as its base machine"), std::string::npos) << made.output;
+  EXPECT_TRUE(says(made, "times as fast as its base machine"));
   const json data = data_of(sweep / "point-3.html");
   for (const char* name : {"run_cycles", "run_references", "run_waits"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
@@ -344,25 +326,13 @@ TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
                  "there is no such point; the sweep has 24");
 }
 
-TEST_F(ReportCommand, EscapesWhatASceneIsCalled) {
-  const fs::path run = made_run();
-  json result = json::parse(read(run / "result.json"));
-  result["figures"]["frame"]["scene"] = "</script><script>alert(1)</script>";
-  result["machine"]["what_helps"]["sentence"] = "<img src=x onerror=alert(1)>";
-  write(run / "result.json", result.dump());
-  ASSERT_EQ(marti("report " + quoted(run)).status, 0);
-  const std::string page = read(run / "report.html");
-  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
-  EXPECT_EQ(page.find("<img src=x"), std::string::npos);
-}
-
 TEST_F(ReportCommand, ReplacesNothingButPages) {
   const fs::path run = made_run();
   const auto refused = [&](const fs::path& file, const std::string& complaint) {
     const Outcome outcome = marti("report " + quoted(run) + " -o " + quoted(file));
     EXPECT_EQ(outcome.status, 2) << outcome.output;
-    EXPECT_NE(outcome.output.find(file.string() + ": "), std::string::npos) << outcome.output;
-    EXPECT_NE(outcome.output.find(complaint), std::string::npos) << outcome.output;
+    EXPECT_TRUE(says(outcome, file.string() + ": "));
+    EXPECT_TRUE(says(outcome, complaint));
   };
   const std::string result = read(run / "result.json");
   refused(run / "result.json", "not an HTML page");
@@ -399,27 +369,6 @@ TEST_F(ReportCommand, WritesPageAndPlotsTogetherOrNothing) {
   EXPECT_TRUE(fs::exists(place("plots") / "run_cycles.csv"));
 }
 
-TEST_F(ReportCommand, LeavesOutALargeImageAndNamesOneThatCannotBeRead) {
-  const fs::path run = made_run();
-  // As a run with so large an image would leave it.
-  fs::resize_file(run / "image.png", (16U << 20U) + 1);
-  auto result = nlohmann::ordered_json::parse(read(run / "result.json"));
-  result["files"]["image.png"]["sha256"] = sim::sha256_of_file(run / "image.png");
-  write(run / "result.json", result.dump());
-  const Outcome large = marti("report " + quoted(run));
-  EXPECT_EQ(large.status, 0) << large.output;
-  EXPECT_NE(read(run / "report.html").find("image.png is left out of this page: it has more than 16 MiB"),
-            std::string::npos);
-  fs::remove(run / "image.png");
-  fs::create_symlink("none", run / "image.png");
-  const Outcome dangling = marti("report " + quoted(run));
-  EXPECT_EQ(dangling.status, 0) << dangling.output;
-  EXPECT_NE(
-      dangling.output.find("image.png is left out of this page: it cannot be read, or is no regular file."),
-      std::string::npos)
-      << dangling.output;
-}
-
 TEST_F(ReportCommand, TakesNoSavingThatIsNoWholeNumber) {
   const fs::path run = made_run();
   json result = json::parse(read(run / "result.json"));
@@ -441,7 +390,7 @@ TEST(ReportWithoutScripts, SaysHowToBuildWithThem) {
   }
   const TemporaryDirectory directory;
   const std::string run = quoted(directory.path() / "run");
-  ASSERT_EQ(marti("run " + small + " -o " + run).status, 0);
+  ASSERT_EQ(marti("run " + small_run + " -o " + run).status, 0);
   expect_refused("report " + run, "-DMARTI_REPORT=ON");
 }
 

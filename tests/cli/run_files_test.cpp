@@ -38,9 +38,8 @@ TEST(RunFiles, NoneReplacesAnInput) {
 // Files of an earlier run that this run does not write are removed; other files stay.
 TEST(RunFiles, AreASet) {
   const TemporaryDirectory directory;
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "marti.toml";
   const fs::path out = directory.path() / "out";
-  const std::string run = "run " + quoted(config) + small_teapot + " -o " + quoted(out);
+  const std::string run = "run " + small_run + " -o " + quoted(out);
   const std::set<std::string> plain = {"image.exr", "image.png", "result.json"};
   const std::string everything =
       " --set count.attribution=true --set count.working_set=true --set record.heat_maps=true"

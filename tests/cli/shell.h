@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/support/files.h"
 
@@ -35,8 +36,10 @@ inline std::string quoted(const std::filesystem::path& path) { return "'" + path
 
 inline Outcome marti(const std::string& arguments) { return shell(quoted(MARTI_PROGRAM) + " " + arguments); }
 
-inline bool says(const Outcome& outcome, const std::string& text) {
-  return outcome.output.find(text) != std::string::npos;
+/// Whether the program has printed the text; a failed expectation shows all that it has printed.
+inline testing::AssertionResult says(const Outcome& outcome, const std::string& text) {
+  const bool said = outcome.output.find(text) != std::string::npos;
+  return (said ? testing::AssertionSuccess() : testing::AssertionFailure()) << outcome.output;
 }
 
 /// The program must refuse these arguments in these words.
@@ -61,8 +64,40 @@ inline int expect_same_files(const std::filesystem::path& a, const std::filesyst
   return compared;
 }
 
+/// A study prints these words and writes these files into a/ of the directory, and the same ones once more
+/// into b/. Returns how many files were the same.
+inline int expect_study(const std::string& study, const std::filesystem::path& directory,
+                        const std::vector<std::string>& words, const std::vector<std::string>& files) {
+  const Outcome outcome = marti("study " + study + " -o " + quoted(directory / "a"));
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  for (const std::string& text : words) {
+    EXPECT_TRUE(says(outcome, text)) << text;
+  }
+  for (const std::string& name : files) {
+    EXPECT_TRUE(std::filesystem::exists(directory / "a" / name)) << name;
+  }
+  EXPECT_EQ(marti("study " + study + " -o " + quoted(directory / "b")).status, 0);
+  return expect_same_files(directory / "a", directory / "b");
+}
+
+/// A study cannot write files larger than a few blocks, such as its database, as on a full disk: it ends, and
+/// the results that are there stay.
+inline void expect_kept_on_a_full_disk(const std::string& study, const std::filesystem::path& results) {
+  const auto before = files_of(results);
+  const Outcome full = shell("ulimit -f 8; trap '' XFSZ; " + quoted(MARTI_PROGRAM) + " study " + study +
+                             " --set node.clock=40MHz -o " + quoted(results));
+  EXPECT_EQ(full.status, 2) << full.output;
+  EXPECT_TRUE(before == files_of(results)) << "a file has changed, or one was left behind";
+}
+
 /// Settings of a run that takes no time.
 inline const std::string small_teapot =
     " --set image.width=24 --set image.height=16 --set scene.source=teapot:2";
+
+/// A configuration that comes with the program, as an argument.
+inline std::string shipped(const std::string& name) {
+  return quoted(std::filesystem::path(MARTI_SOURCE) / "configs" / name);
+}
+inline const std::string small_run = shipped("marti.toml") + small_teapot;
 
 }  // namespace marti::test

@@ -9,6 +9,7 @@
 
 #include "tests/cli/printed_json.h"
 #include "tests/cli/sweep_files.h"
+#include "tests/support/csv_records.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -40,10 +41,10 @@ TEST_F(SweepCommand, SaysThePlanTimesAllAndIsDone) {
   const Outcome first = sweep(config, out);
   ASSERT_EQ(first.status, 0) << first.output;
   EXPECT_TRUE(first.output.starts_with("axes          image.max_depth: 1, 2\n")) << first.output;
-  EXPECT_TRUE(says(first, "frames        2 functional runs, 0 done\n")) << first.output;
-  EXPECT_TRUE(says(first, "machines      24, 0 done\n")) << first.output;
-  EXPECT_TRUE(says(first, "timed         24 machines on 2 frames in ")) << first.output;
-  EXPECT_TRUE(says(first, "wrote         " + store.string())) << first.output;
+  EXPECT_TRUE(says(first, "frames        2 functional runs, 0 done\n"));
+  EXPECT_TRUE(says(first, "machines      24, 0 done\n"));
+  EXPECT_TRUE(says(first, "timed         24 machines on 2 frames in "));
+  EXPECT_TRUE(says(first, "wrote         " + store.string()));
   EXPECT_EQ(names_in(out).size(), 2U) << "results.sqlite and points.csv";
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 24);
   const std::string points = read(out / "points.csv");
@@ -52,8 +53,8 @@ TEST_F(SweepCommand, SaysThePlanTimesAllAndIsDone) {
   const std::string before = dump(store);
   const Outcome again = sweep(config, out);
   ASSERT_EQ(again.status, 0) << again.output;
-  EXPECT_TRUE(says(again, "machines      24, 24 done\n")) << again.output;
-  EXPECT_TRUE(says(again, "all of it was there already\n")) << again.output;
+  EXPECT_TRUE(says(again, "machines      24, 24 done\n"));
+  EXPECT_TRUE(says(again, "all of it was there already\n"));
   EXPECT_EQ(dump(store), before);
   EXPECT_EQ(read(out / "points.csv"), points);
 }
@@ -97,28 +98,13 @@ TEST_F(SweepCommand, EachPointIsWhatRunSays) {
 TEST_F(SweepCommand, PointsAsCsvAreThoseOfJson) {
   ASSERT_EQ(sweep(config, out).status, 0);
   const json points = printed_json("sweep " + quoted(config) + " -o " + quoted(out) + " 2> /dev/null");
-  std::istringstream csv(read(out / "points.csv"));
-  const auto cells = [&] {
-    std::string line;
-    std::getline(csv, line, '\r');  // lines end as RFC 4180 has them
-    csv.get();
-    std::vector<std::string> all(1);
-    bool quoted_text = false;
-    for (const char c : line) {
-      if (c == '"') {
-        quoted_text = !quoted_text;
-      } else if (c == ',' && !quoted_text) {
-        all.emplace_back();
-      } else {
-        all.back() += c;
-      }
-    }
-    return all;
-  };
-  const std::vector<std::string> names = cells();
+  const std::vector<CsvRecord> csv = read_csv(read(out / "points.csv")).value();
+  const CsvRecord& names = csv.at(0);
   ASSERT_EQ(names.size(), points["columns"].size());
-  for (const json& point : points["rows"]) {
-    const std::vector<std::string> row = cells();
+  ASSERT_EQ(csv.size(), points["rows"].size() + 1);
+  for (std::size_t k = 1; k < csv.size(); ++k) {
+    const CsvRecord& row = csv[k];
+    const json& point = points["rows"][k - 1];
     ASSERT_EQ(row.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
       const json value = point.value(names[i], json());  // fields without a value are missing
@@ -141,8 +127,8 @@ TEST_F(SweepCommand, AChangedConfigurationAddsPointsAndKeepsResults) {
   write(config, more);
   const Outcome outcome = sweep(config, out);
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_TRUE(says(outcome, "machines      24, 16 done\n")) << outcome.output;
-  EXPECT_TRUE(says(outcome, "timed         8 machines on 2 frames")) << outcome.output;
+  EXPECT_TRUE(says(outcome, "machines      24, 16 done\n"));
+  EXPECT_TRUE(says(outcome, "timed         8 machines on 2 frames"));
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 32);
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM points WHERE \"machine.nodes\" = 4"), 0);
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM host_machines WHERE session = 2"), 8);
@@ -164,7 +150,7 @@ TEST_F(SweepCommand, AChangedConfigurationAddsPointsAndKeepsResults) {
 TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
   const Outcome outcome = marti("sweep " + quoted(config) + " --plan");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_TRUE(says(outcome, "machines      24")) << outcome.output;
+  EXPECT_TRUE(says(outcome, "machines      24"));
   EXPECT_EQ(marti("sweep " + quoted(config) + " --plan -o " + quoted(out)).status, 0);
   EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(names_in(directory.path()).size(), 1U);
@@ -172,14 +158,13 @@ TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
   ASSERT_EQ(sweep(config, out).status, 0);
   const std::string before = read(store);
   const Outcome all = sweep(config, out, "--plan");
-  EXPECT_TRUE(says(all, "frames        2 functional runs, 2 done\nmachines      24, 24 done\n"))
-      << all.output;
+  EXPECT_TRUE(says(all, "frames        2 functional runs, 2 done\nmachines      24, 24 done\n"));
   std::string other = small_sweep;
   other.replace(other.find("[1, 2, 4]"), 9, "[1, 8]");
   write(config, other);
   const Outcome some = sweep(config, out, "--plan");
-  EXPECT_TRUE(says(some, "machines      16, 8 done\n")) << some.output;
-  EXPECT_TRUE(says(some, "\ntime          about ")) << some.output;
+  EXPECT_TRUE(says(some, "machines      16, 8 done\n"));
+  EXPECT_TRUE(says(some, "\ntime          about "));
   EXPECT_EQ(read(store), before);
   EXPECT_EQ(names_in(out).size(), 2U);
 }
@@ -187,8 +172,8 @@ TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
 TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
   const Outcome best = sweep(config, out, "--best speed_up --budget 6");
   ASSERT_EQ(best.status, 0) << best.output;
-  EXPECT_TRUE(says(best, "best speed_up within 6: ")) << best.output;
-  EXPECT_TRUE(says(best, "note: the points have 2 different frames")) << best.output;
+  EXPECT_TRUE(says(best, "best speed_up within 6: "));
+  EXPECT_TRUE(says(best, "note: the points have 2 different frames"));
   const json front = json::parse(sweep(config, out, "--best end --json").output);
   const json points = json::parse(sweep(config, out, "--json").output);
   double least = 0.0;
@@ -216,16 +201,15 @@ TEST_F(SweepCommand, FindsTheBestMachineForABudget) {
       << "the old name";
   const Outcome dear = sweep(config, out, "--best speed_up --budget 0.5");
   EXPECT_EQ(dear.status, 2);
-  EXPECT_TRUE(says(dear, "no point costs at most 0.5; the cheapest that has the figure speed_up costs "))
-      << dear.output;
+  EXPECT_TRUE(says(dear, "no point costs at most 0.5; the cheapest that has the figure speed_up costs "));
   const Outcome wrong = sweep(config, place("none"), "--best sped_up");
   EXPECT_EQ(wrong.status, 2);
-  EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?")) << wrong.output;
+  EXPECT_TRUE(says(wrong, "did you mean \"speed_up\"?"));
   EXPECT_FALSE(fs::exists(place("none"))) << "said before anything is done";
   const Outcome one_frame =
       sweep(config, place("one"), "--set 'sweep.filter=image.max_depth = 1' --best end");
-  EXPECT_TRUE(says(one_frame, "best end: ")) << one_frame.output;
-  EXPECT_FALSE(says(one_frame, "different frames")) << one_frame.output;
+  EXPECT_TRUE(says(one_frame, "best end: "));
+  EXPECT_FALSE(says(one_frame, "different frames"));
   EXPECT_EQ(sweep(config, out, "--budget 3").status, 2) << "without --best";
   EXPECT_EQ(sweep(config, out, "--best end --budget=-1").status, 2);
   EXPECT_EQ(sweep(config, out, "--best end --within nan").status, 2);
@@ -243,13 +227,13 @@ TEST_F(SweepCommand, ASceneFileIsPartOfTheFrame) {
   ASSERT_EQ(marti("scene export teapot:3 " + quoted(scene)).status, 0);
   const Outcome other = sweep(config, out, set);
   ASSERT_EQ(other.status, 0) << other.output;
-  EXPECT_TRUE(says(other, "timed         24 machines on 2 frames")) << other.output;
+  EXPECT_TRUE(says(other, "timed         24 machines on 2 frames"));
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM frames"), 4);
   EXPECT_EQ(number_of(store, "SELECT COUNT(*) FROM results"), 48);
   fs::remove(scene);
   const Outcome gone = sweep(config, out, set);
   EXPECT_EQ(gone.status, 2);
-  EXPECT_TRUE(says(gone, scene.string())) << gone.output;
+  EXPECT_TRUE(says(gone, scene.string()));
 }
 
 TEST_F(SweepCommand, HasTheEnergyOfEachPoint) {
@@ -259,7 +243,7 @@ TEST_F(SweepCommand, HasTheEnergyOfEachPoint) {
         "energy.leakage_density = [0.0, 100.0]\n");
   const Outcome best = sweep(config, out, "--best energy");
   ASSERT_EQ(best.status, 0) << best.output;
-  EXPECT_TRUE(says(best, "energy.voltage = 0.5, energy.leakage_density = 0")) << best.output;
+  EXPECT_TRUE(says(best, "energy.voltage = 0.5, energy.leakage_density = 0"));
   // Nothing but what switches and what leaks differs among the points, and each by its axis; beside them are
   // the machines of one node that they are measured against.
   EXPECT_EQ(rows_of(store,
@@ -271,7 +255,7 @@ TEST_F(SweepCommand, HasTheEnergyOfEachPoint) {
             rows_of(store, "SELECT 1, 1, 3, 2, 6, 0"));
   const Outcome huge = sweep(config, out, "--set energy.node_area=10000 --set node.clock=1kHz");
   EXPECT_EQ(huge.status, 2);
-  EXPECT_TRUE(says(huge, "sweep.toml:7: energy.preset: the energy of ")) << huge.output;
+  EXPECT_TRUE(says(huge, "sweep.toml:7: energy.preset: the energy of "));
 }
 
 TEST_F(SweepCommand, RefusesWhatItCannotDo) {
@@ -279,10 +263,10 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   write(place("file"), "in the way");
   const Outcome blocked = sweep(config, place("file"));
   EXPECT_EQ(blocked.status, 2);
-  EXPECT_TRUE(says(blocked, place("file").string())) << blocked.output;
+  EXPECT_TRUE(says(blocked, place("file").string()));
   const Outcome one = sweep(fs::path(MARTI_SOURCE) / "configs" / "marti.toml", out);
   EXPECT_EQ(one.status, 2);
-  EXPECT_TRUE(says(one, "[sweep.axes], [[sweep.zip]] or [sweep.points.NAME]")) << one.output;
+  EXPECT_TRUE(says(one, "[sweep.axes], [[sweep.zip]] or [sweep.points.NAME]"));
   EXPECT_EQ(sweep(config, out, "--threads=-1").status, 2);
   EXPECT_EQ(sweep(config, out, "--threads 4097").status, 2);
   EXPECT_EQ(sweep(config, out, "--threads many").status, 2);
@@ -294,13 +278,13 @@ TEST_F(SweepCommand, RefusesWhatItCannotDo) {
   const Outcome large =
       sweep(config, out, "--set host_machine.memory_limit=1MiB --set machine.clusters=4000");
   EXPECT_EQ(large.status, 2);
-  EXPECT_TRUE(says(large, "host_machine.memory_limit = 1 MiB")) << large.output;
+  EXPECT_TRUE(says(large, "host_machine.memory_limit = 1 MiB"));
   // A frame that does not: that is found out when it is to be traced.
   const std::string huge =
       "--set host_machine.memory_limit=20MiB --set image.width=4000 --set image.height=4000";
   const Outcome frame = sweep(config, out / "below", huge);
   EXPECT_EQ(frame.status, 2);
-  EXPECT_TRUE(says(frame, "0 of 24 machines are saved")) << frame.output;
+  EXPECT_TRUE(says(frame, "0 of 24 machines are saved"));
   EXPECT_FALSE(fs::exists(out)) << "what was made for results that never came is removed";
   ASSERT_EQ(sweep(config, out).status, 0);
   const std::string results = results_by_key(store);

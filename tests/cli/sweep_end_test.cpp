@@ -79,7 +79,7 @@ TEST_P(SweepKilled, ComesToTheSameEnd) {
   const long before = results_in(out);
   const Outcome last = sweep(config, out);
   ASSERT_EQ(last.status, 0) << last.output;
-  EXPECT_TRUE(says(last, std::to_string(before) + " done\n")) << before << "\n" << last.output;
+  EXPECT_TRUE(says(last, std::to_string(before) + " done\n")) << before;
   EXPECT_EQ(dump(out / "results.sqlite"), expected);
   EXPECT_EQ(read(out / "points.csv"), read(whole / "points.csv"));
   EXPECT_EQ(names_in(out).size(), 2U) << "nothing that the killed ones left";
@@ -115,7 +115,7 @@ TEST_P(SweepInterrupted, SaysWhatIsSavedAndCanGoOn) {
   EXPECT_EQ(names_in(out).size(), 1U) << "the store alone, without its log or temporary files";
   const Outcome last = sweep(config, out);
   ASSERT_EQ(last.status, 0) << last.output;
-  EXPECT_TRUE(says(last, std::to_string(saved) + " done\n")) << last.output;
+  EXPECT_TRUE(says(last, std::to_string(saved) + " done\n"));
   const fs::path whole = directory.path() / "whole";
   ASSERT_EQ(sweep(config, whole).status, 0);
   EXPECT_EQ(dump(out / "results.sqlite"), dump(whole / "results.sqlite"));
@@ -141,8 +141,8 @@ TEST(SweepEnd, TwoAtOnceOnOneStoreAreRefused) {
     GTEST_SKIP() << "the first was too quick for this test";
   }
   EXPECT_EQ(second.status, 2);
-  EXPECT_TRUE(says(second, (out / "results.sqlite").string())) << second.output;
-  EXPECT_TRUE(says(second, "process")) << second.output;
+  EXPECT_TRUE(says(second, (out / "results.sqlite").string()));
+  EXPECT_TRUE(says(second, "process"));
   EXPECT_EQ(first.wait(), 0) << read(directory.path() / "said");
   EXPECT_EQ(results_in(out), 320);
 }
@@ -162,11 +162,11 @@ TEST(SweepEnd, TheLockIsTakenBeforeTheStoreIsRead) {
     ASSERT_EQ(flock(held.get(), LOCK_EX), 0);
     const Outcome refused = sweep(config, out);
     EXPECT_EQ(refused.status, 2);
-    EXPECT_TRUE(says(refused, "process 1 on another computer is writing it")) << refused.output;
+    EXPECT_TRUE(says(refused, "process 1 on another computer is writing it"));
   }
   const Outcome damaged = sweep(config, out);
   EXPECT_EQ(damaged.status, 2);
-  EXPECT_TRUE(says(damaged, "results.sqlite: is no SQLite database")) << damaged.output;
+  EXPECT_TRUE(says(damaged, "results.sqlite: is no SQLite database"));
   EXPECT_EQ(read(out / "results.sqlite"), "half of a store");
 }
 
@@ -181,7 +181,7 @@ TEST(SweepEnd, AFullDiskIsToldAndTheSweepGoesOnLater) {
     const Outcome full = shell(std::string("ulimit -f ") + most + "; trap '' XFSZ; " + quoted(MARTI_PROGRAM) +
                                " sweep " + quoted(config) + " --quiet -o " + quoted(out));
     EXPECT_EQ(full.status, 2) << full.output;
-    EXPECT_TRUE(says(full, "marti: " + (out / "results.sqlite").string())) << full.output;
+    EXPECT_TRUE(says(full, "marti: " + (out / "results.sqlite").string()));
   }
   const Outcome last = sweep(config, out);
   ASSERT_EQ(last.status, 0) << last.output;

@@ -6,45 +6,25 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/cli/shell.h"
+#include "tests/support/csv_records.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Row = std::vector<std::string>;
+using Row = CsvRecord;
 
-/// RFC 4180, for texts without line ends within cells.
-std::vector<Row> parse(const std::string& text) {
-  std::vector<Row> rows;
-  Row row;
-  std::string cell;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"') {
-      if (quoted && i + 1 < text.size() && text[i + 1] == '"') {
-        cell += text[++i];
-      } else {
-        quoted = !quoted;
-      }
-    } else if (!quoted && (c == ',' || c == '\n')) {
-      row.push_back(std::exchange(cell, ""));
-      if (c == '\n') {
-        rows.push_back(std::exchange(row, {}));
-      }
-    } else if (quoted || c != '\r') {
-      cell += c;
-    }
-  }
-  EXPECT_TRUE(cell.empty() && row.empty()) << "the last line has no end";
-  return rows;
+std::vector<Row> records_of(const fs::path& file) {
+  const std::optional<std::vector<Row>> records = read_csv(read(file));
+  EXPECT_TRUE(records.has_value()) << file;
+  return records.value_or(std::vector<Row>());
 }
 
 bool is_number(const std::string& cell) {
@@ -60,7 +40,7 @@ std::size_t column(const Row& header, const std::string& name) {
 /// The columns of each table that hold quantities, from columns.csv.
 std::map<std::string, std::set<std::string>> quantities(const fs::path& directory) {
   std::map<std::string, std::set<std::string>> found;
-  const std::vector<Row> rows = parse(read(directory / "columns.csv"));
+  const std::vector<Row> rows = records_of(directory / "columns.csv");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (!rows[i].at(column(rows[0], "unit")).empty()) {
       found[rows[i].at(column(rows[0], "table_name"))].insert(rows[i].at(column(rows[0], "column_name")));
@@ -81,7 +61,7 @@ int check(const fs::path& directory) {
     ++files;
     const std::string name = entry.path().filename().string();
     const auto with_unit = units.find(entry.path().stem().string());
-    const std::vector<Row> rows = parse(read(entry.path()));
+    const std::vector<Row> rows = records_of(entry.path());
     EXPECT_FALSE(rows.empty()) << name;
     const Row header = rows.empty() ? Row() : rows[0];
     EXPECT_EQ(std::set<std::string>(header.begin(), header.end()).size(), header.size()) << name;
@@ -104,8 +84,7 @@ int check(const fs::path& directory) {
 
 TEST(Tables, OfASweepAreForOtherPrograms) {
   const TemporaryDirectory directory;
-  const fs::path config = fs::path(MARTI_SOURCE) / "configs" / "sweep-small.toml";
-  ASSERT_EQ(marti("sweep " + quoted(config) + " -o " + quoted(directory.path())).status, 0);
+  ASSERT_EQ(marti("sweep " + shipped("sweep-small.toml") + " -o " + quoted(directory.path())).status, 0);
   EXPECT_EQ(check(directory.path()), 1);
 }
 

@@ -69,6 +69,11 @@ inline void expect_equal(const processors::replay::MachineResult& a,
   ASSERT_EQ(a.flow.rays, b.flow.rays);
   ASSERT_EQ(a.flow.collected, b.flow.collected);
   ASSERT_EQ(a.flow.most_in_flight, b.flow.most_in_flight);
+  ASSERT_EQ(a.flow.regions, b.flow.regions);
+  ASSERT_EQ(a.flow.top_nodes, b.flow.top_nodes);
+  ASSERT_EQ(a.flow.duplicated_primitives, b.flow.duplicated_primitives);
+  ASSERT_EQ(a.flow.memory_bytes, b.flow.memory_bytes);
+  ASSERT_EQ(a.flow.sampling_work, b.flow.sampling_work);
   expect_equal_counters(a.contexts.nodes, b.contexts.nodes);
   expect_equal_counters(a.host, b.host);
 }

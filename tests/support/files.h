@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -27,6 +28,15 @@ inline std::set<std::string> names_in(const std::filesystem::path& directory) {
     names.insert(entry.path().filename().string());
   }
   return names;
+}
+
+/// All files of a directory, by name.
+inline std::map<std::string, std::string> files_of(const std::filesystem::path& directory) {
+  std::map<std::string, std::string> files;
+  for (const std::string& name : names_in(directory)) {
+    files[name] = read(directory / name);
+  }
+  return files;
 }
 
 }  // namespace marti::test

@@ -394,11 +394,17 @@ class NaiveSpace {
     }
     for (const Cluster& cluster : clusters_) {
       result.flow.networks.push_back(cluster.network->statistics());
+      result.flow.memory_bytes.insert(result.flow.memory_bytes.end(), plan_.memory_bytes.begin(),
+                                      plan_.memory_bytes.end());
     }
     result.host.requests = static_cast<std::int64_t>(sent_);
     result.host.busy = host_busy_;
     result.flow.rays += result.host.requests;
     result.flow.most_in_flight = most_in_flight_;
+    result.flow.regions = plan_.regions.size();
+    result.flow.top_nodes = plan_.regions.top_nodes;
+    result.flow.duplicated_primitives = plan_.duplicated_primitives;
+    result.flow.sampling_work = plan_.sampling_work;
     return result;
   }
 

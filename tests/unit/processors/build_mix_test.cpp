@@ -1,4 +1,4 @@
-// The cost of splitting a node, against a new measurement; and real frames on machines that build their tree.
+// The cost of splitting a node, against a new measurement; and the lists of branches of real trees.
 #include "processors/cost/build_mix.h"
 
 #include <gtest/gtest.h>
@@ -7,24 +7,19 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <vector>
 
 #include "accel/octree.h"
 #include "accel/octree_sort.h"
 #include "processors/node/branch_lists.h"
-#include "processors/replay/replay.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
-#include "tests/support/logged_samples.h"
 
 namespace marti::processors {
 
 using namespace cost;
 using namespace machine;
 using namespace node;
-using namespace program;
-using namespace replay;
 
 namespace {
 
@@ -160,43 +155,6 @@ TEST(DynamicFrames, ABranchListedWhatItsLeavesDo) {
     for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
       ASSERT_EQ(lists.of(node).size(), topology.work[node].listed) << kind << " node " << node;
     }
-  }
-}
-
-TEST(DynamicFrames, WhatTheRaysVisitIsBuiltAndNothingElse) {
-  for (const char* kind : {"octree", "bsp"}) {
-    const test::Built built(scenes::make_procedural("teapot:4"), kind);
-    const Frame frame = built.render({.width = 48, .height = 48, .max_depth = 2, .record = true});
-    const WorkLog& log = *frame.log;
-    const std::set<std::uint32_t> visited = marti::test::visited_branches(log);
-    MachineConfig machine;
-    machine.clock = sim::Clock::from_hertz(100e6);
-    machine.build = {Sharing::shared, InitialTree::level, 1, 10.0};
-    std::int64_t branches = 0;
-    for (const accel::TopologyNode& node : log.topology.nodes) {
-      branches += node.leaf ? 0 : 1;
-    }
-    for (const std::uint32_t nodes : {1U, 5U, 64U}) {
-      machine.nodes = nodes;
-      const MachineResult result = replay::replay(log, machine);
-      EXPECT_EQ(result.build.counts().splits, static_cast<std::int64_t>(visited.size())) << kind;
-      EXPECT_LT(result.build.counts().splits, branches) << "the rays of one view do not need the whole tree";
-      EXPECT_EQ(result.build.start_up, 0);
-      EXPECT_GT(result.time()[static_cast<std::size_t>(Activity::building)], 0);
-    }
-    // Private trees: at least the branches that any node needs, at most these once for each node.
-    machine.nodes = 5;
-    machine.build.sharing = Sharing::private_trees;
-    const MachineResult own = replay::replay(log, machine);
-    EXPECT_EQ(own.build.all_levels().distinct_splits, static_cast<std::int64_t>(visited.size()));
-    EXPECT_GT(own.build.wasted_splits(), 0);
-    EXPECT_LE(own.build.counts().splits, 5 * static_cast<std::int64_t>(visited.size()));
-    // Building everything costs more memory and time than building what is needed.
-    machine.build.sharing = Sharing::none;
-    const MachineResult none = replay::replay(log, machine);
-    EXPECT_EQ(none.build.counts().start_up_splits, branches);
-    EXPECT_GT(none.build.start_up, 0);
-    EXPECT_EQ(none.build.all_levels().partial, 0);
   }
 }
 

@@ -134,44 +134,6 @@ std::int64_t misses_of_class(const MachineResult& result, memory::MissClass what
   return sum;
 }
 
-TEST(CacheCount, ClassesOfCachesThatCannotHaveThem) {
-  test::Random random(5);
-  const WorkLog log = test::random_log(random, 16, 16);
-  for (int round = 0; round < 40; ++round) {
-    MachineConfig machine = random_counting_machine(random);
-    machine.cache.cache.ways = memory::full_ways;
-    machine.cache.cache.replacement = memory::Replacement::lru;
-    MachineResult result = replay::replay(log, machine);
-    EXPECT_EQ(misses_of_class(result, memory::MissClass::conflict), 0);
-    machine.cache.cache.size = 1U << 20U;
-    machine.cache.split_sizes.fill(1U << 20U);
-    result = replay::replay(log, machine);
-    EXPECT_EQ(misses_of_class(result, memory::MissClass::compulsory), result.references().all_misses());
-  }
-}
-
-TEST(SecondLevel, OneNodeIsComputePlusHitsOfBothLevelsPlusMissesTimesLatency) {
-  test::Random random(6);
-  for (int round = 0; round < 60; ++round) {
-    const WorkLog log = test::random_log(random, 12, 12);
-    MachineConfig machine = random_counting_machine(random);
-    machine.count = {};
-    machine.clusters = 1;
-    machine.nodes = 1;
-    machine.placement = Placement::shared;
-    machine.interconnect.kind = memory::InterconnectKind::ideal;
-    machine.layout.pixel_bytes = 1;
-    machine.write_buffer = 4096;
-    machine.l2.sharing = SecondLevel::none;
-    const MachineResult without = replay::replay(log, machine);
-    machine.l2.sharing = SecondLevel::private_caches;
-    const MachineResult with = replay::replay(log, machine);
-    const sim::Ticks saved =
-        with.l2.counters().hits * (with.unloaded_miss - machine.clock.cycles(machine.l2.hit_cycles));
-    EXPECT_EQ(with.nodes[0].finish, without.nodes[0].finish - saved);
-  }
-}
-
 TEST(SecondLevel, ASharedOneThatHoldsEverythingReadsEachLineOfAClusterOnce) {
   test::Random random(7);
   const WorkLog log = test::random_log(random, 12, 12);

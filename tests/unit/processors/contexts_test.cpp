@@ -29,27 +29,20 @@ MachineConfig random_contexts(test::Random& random, const WorkLog& log, std::uin
   return machine;
 }
 
-RC_GTEST_PROP(Contexts, OneContextGivesWhatNodesWithoutContextsGive, (std::uint64_t seed)) {
+RC_GTEST_PROP(Contexts, OneContextDoesWhatNodesWithoutContextsDo, (std::uint64_t seed)) {
   test::Random random(seed);
-  const WorkLog log = test::small_log(random);
-  const MachineConfig machine = test::random_machine(random);
-  MachineResult one = replay::replay(log, machine, {.with_contexts = true});
-  RC_ASSERT(one.contexts.counts().switches == 0);
-  one.contexts.nodes.clear();
-  test::expect_equal(replay::replay(log, machine), one);
-  RC_ASSERT(!::testing::Test::HasFatalFailure());
-}
-
-RC_GTEST_PROP(Contexts, OneContextBuildsATreeAsNodesWithoutContextsDo, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const WorkLog log = test::random_log_with_tree(random);
-  MachineConfig machine = test::random_machine(random);
-  test::add_random_build(random, machine);
-  MachineResult one = replay::replay(log, machine, {.with_contexts = true});
-  RC_ASSERT(one.contexts.counts().switches == 0);
-  one.contexts.nodes.clear();
-  test::expect_equal(replay::replay(log, machine), one);
-  RC_ASSERT(!::testing::Test::HasFatalFailure());
+  for (const bool builds : {false, true}) {
+    const WorkLog log = builds ? test::random_log_with_tree(random) : test::small_log(random);
+    MachineConfig machine = test::random_machine(random);
+    if (builds) {
+      test::add_random_build(random, machine);
+    }
+    MachineResult one = replay::replay(log, machine, {.with_contexts = true});
+    RC_ASSERT(one.contexts.counts().switches == 0);
+    one.contexts.nodes.clear();
+    test::expect_equal(replay::replay(log, machine), one);
+    RC_ASSERT(!::testing::Test::HasFatalFailure());
+  }
 }
 
 RC_GTEST_PROP(Contexts, ThePlainImplementationGivesTheSame, (std::uint64_t seed)) {

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <array>
+#include <numeric>
 #include <set>
 
 #include "processors/cost/build_mix.h"
@@ -76,7 +77,7 @@ RC_GTEST_PROP(Dynamic, AFullInitialTreeIsBuildingBeforehandHoweverItIsShared, (s
   }
 }
 
-RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes, (std::uint64_t seed)) {
+RC_GTEST_PROP(Dynamic, TreesAreBuiltAsFarAsTheRaysNeedThemByAnyNumberOfNodes, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_tree_log(random, 8, 8);
   MachineConfig machine = test::random_machine(random);
@@ -103,6 +104,7 @@ RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes,
   }
   for (const std::uint32_t nodes : {1U, 2U, 3U, 16U}) {
     machine.nodes = nodes;
+    machine.build.sharing = Sharing::shared;
     const MachineResult result = replay::replay(log, machine);
     for (std::size_t level = 0; level < result.build.levels.size(); ++level) {
       RC_ASSERT(result.build.levels[level].splits == splits[level + 1]);
@@ -113,6 +115,12 @@ RC_GTEST_PROP(Dynamic, ASharedTreeIsBuiltAsFarAsTheRaysNeedItByAnyNumberOfNodes,
       RC_ASSERT(result.build.counts().waits == 0);
       RC_ASSERT(result.build.counts().invalidations == 0);
     }
+    // Of private trees some node splits each of these branches, and no node others or one twice.
+    machine.build.sharing = Sharing::private_trees;
+    const std::int64_t all = std::accumulate(splits.begin(), splits.end(), std::int64_t{0});
+    const MachineResult own = replay::replay(log, machine);
+    RC_ASSERT(own.build.all_levels().distinct_splits == all);
+    RC_ASSERT(own.build.counts().splits <= all * nodes);
   }
 }
 

@@ -44,21 +44,6 @@ std::int64_t sum_of_parts(const EnergyResult& energy) {
   return energy.operations + energy.l1 + energy.l2 + energy.interconnect + energy.memory + energy.leakage;
 }
 
-TEST(Energy, OfCachesIsLookUpsAndLinesBroughtIn) {
-  MachineConfig machine = without_figures();
-  machine.l2.sharing = SecondLevel::private_caches;
-  machine.energy.figures.l1 = {10.0, 4.0, 0.0};
-  machine.energy.figures.l2 = {30.0, 7.0, 0.0};
-  EnergyCounts counts;
-  counts.l1[0] = {3, 2};
-  counts.l1_prefetches = 6;
-  counts.l2 = {5, 3};
-  const EnergyResult energy = energy_of(machine, counts);
-  EXPECT_EQ(energy.l1, ((3 + 2) * 10 + (2 + 6) * 4) * fj_a_pj);
-  EXPECT_EQ(energy.l2, ((5 + 3) * 30 + 3 * 7) * fj_a_pj);
-  EXPECT_EQ(energy.total, energy.l1 + energy.l2);
-}
-
 TEST(Energy, OfSplitCachesIsThatOfEach) {
   MachineConfig machine = without_figures();
   machine.cache.organisation = CacheOrganisation::split;

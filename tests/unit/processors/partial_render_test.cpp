@@ -91,7 +91,8 @@ TEST_P(PartialRender, PartsTogetherAreTheWhole) {
 
 INSTANTIATE_TEST_SUITE_P(OfAllKinds, PartialRender,
                          testing::Values(RenderOptions{}, RenderOptions{.samples = 3},
-                                         RenderOptions{.floats = true}, RenderOptions{.mailboxes = true}));
+                                         RenderOptions{.floats = true}, RenderOptions{.mailboxes = true},
+                                         RenderOptions{.integrator = Integrator::path, .samples = 2}));
 
 // A pixel of many samples may have more words than the recorder's first buffer.
 TEST(PartialRender, PixelsOfAnyLengthAreTakenOver) {

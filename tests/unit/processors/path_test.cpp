@@ -208,44 +208,6 @@ TEST(Path, TheErrorFallsWithTheSquareRootOfTheSamples) {
   }
 }
 
-TEST(Path, ImageAndHitsDependOnNeitherStructureNorThreads) {
-  const scenes::Scene scene = scenes::make_procedural("room:3");
-  RenderOptions options = paths(20, 4, 6);
-  const Frame plain = Built(scene, "none").render(options);
-  options.record = true;
-  for (const char* kind : {"octree", "bsp", "grid", "bvh"}) {
-    for (const unsigned threads : {1U, 3U}) {
-      const Frame frame = Built(scene, kind).render(options, threads);
-      EXPECT_TRUE(test::same_bytes(frame.image, plain.image)) << kind;
-      EXPECT_EQ(frame.hit_hash, plain.hit_hash) << kind;
-      EXPECT_EQ(marti::test::fault_of(*frame.log), "") << kind;
-      EXPECT_EQ(totals_of(*frame.log).rays[4], frame.rays.traced[4]);
-    }
-  }
-  EXPECT_GT(plain.rays.traced[4], 1000U);
-  options.seed = 9;
-  EXPECT_NE(Built(scene, "octree").render(options).hit_hash, plain.hit_hash);
-}
-
-TEST(Path, PartsOfAFrameAreTheWhole) {
-  const Built built(scenes::make_procedural("room:2"), "octree");
-  RenderOptions options = paths(12, 2, 4);
-  options.record = true;
-  const Frame whole = built.render(options);
-  PixelSet some(12, 12);
-  PixelSet others(12, 12);
-  for (std::uint32_t i = 0; i < 144; ++i) {
-    (i % 5 == 0 ? some : others).add(i % 12, i / 12);
-  }
-  options.only = &some;
-  const Frame first = built.render(options);
-  options.only = &others;
-  options.before = &first;
-  const Frame both = built.render(options);
-  EXPECT_TRUE(test::same_bytes(both.image, whole.image));
-  EXPECT_EQ(both.hit_hash, whole.hit_hash);
-}
-
 TEST(Path, RefusesWhatWouldBeWrong) {
   const Built built(scenes::make_procedural("room:2"), "octree");
   RenderOptions options = paths(4, 1, 2);

@@ -223,13 +223,5 @@ TEST(QuadricSurface, ABallIsLitOnOneSide) {
   }
 }
 
-// The voxel cut has averages of triangles only and says so.
-TEST(QuadricSurface, TheVoxelCutIsRefused) {
-  const test::Built built(scenes::make_procedural("balls:2"), "octree");
-  EXPECT_THROW(
-      static_cast<void>(built.render({.width = 16, .height = 16, .max_depth = 1, .voxel_cut = 100.0})),
-      sim::UserError);
-}
-
 }  // namespace
 }  // namespace marti::processors

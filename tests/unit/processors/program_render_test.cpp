@@ -42,6 +42,7 @@ struct FrameCase {
   const char* scene;
   std::uint32_t samples = 1;
   bool floats = false;
+  Integrator integrator = Integrator::whitted;
 };
 void PrintTo(const FrameCase& frame, std::ostream* out) { *out << frame.scene; }
 class AnyFrames : public testing::TestWithParam<FrameCase> {};
@@ -51,6 +52,7 @@ TEST_P(AnyFrames, DoNotDependOnThreadsRecordingOrStructure) {
   RenderOptions options{.width = 45,
                         .height = 37,
                         .max_depth = 4,
+                        .integrator = GetParam().integrator,
                         .samples = GetParam().samples,
                         .floats = GetParam().floats,
                         .record = true};
@@ -61,6 +63,7 @@ TEST_P(AnyFrames, DoNotDependOnThreadsRecordingOrStructure) {
   EXPECT_EQ(one.hit_hash, four.hit_hash);
   EXPECT_EQ(one.rays.traced, four.rays.traced);
   EXPECT_EQ(marti::test::fault_of(*one.log), "");
+  EXPECT_TRUE(std::ranges::equal(totals_of(*one.log).rays, one.rays.traced));
   EXPECT_EQ(one.log->quadrics.size(), octree.scene.quadrics.size());
   EXPECT_EQ(one.log->primitives, octree.scene.triangles.size() + octree.scene.quadrics.size());
 
@@ -88,7 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Procedural, AnyFrames,
                          testing::Values(FrameCase{"teapot:4"}, FrameCase{"gears:2"}, FrameCase{"tetra:4"},
                                          FrameCase{"lattice:2"}, FrameCase{"tree:4"}, FrameCase{"balls:2"},
                                          FrameCase{"mount:2"}, FrameCase{"balls:1", 5},
-                                         FrameCase{"balls:1", 1, true}, FrameCase{"gears:1", 1, true}));
+                                         FrameCase{"balls:1", 1, true}, FrameCase{"gears:1", 1, true},
+                                         FrameCase{"room:3", 2, false, Integrator::path}));
 
 /// Reads a pixel's words against the order of execution that tracer.h states.
 void check_order(std::span<const std::uint32_t> words, const RenderOptions& options) {
@@ -283,6 +287,8 @@ TEST(Render, RefusesOptionsOutOfRange) {
   refused({.min_weight = -0.1});
   refused({.min_weight = 1.5});
   refused({.min_weight = std::numeric_limits<double>::quiet_NaN()});
+  refused({.samples = 0});
+  refused({.samples = 1025});
 }
 
 TEST(Render, AnEmptySceneIsAllBackground) {

@@ -109,40 +109,6 @@ TEST(Samples, TheirMeanOverSeedsIsTheCoveredArea) {
   }
 }
 
-TEST(Samples, OneIsTheCentreAndNoSeedChangesIt) {
-  const Built built(scenes::make_procedural("balls:1"), "octree");
-  RenderOptions options{.width = 24, .height = 20, .max_depth = 3, .record = true};
-  const Frame first = built.render(options);
-  options.seed = 99;
-  const Frame second = built.render(options);
-  EXPECT_TRUE(same_bytes(first.image, second.image));
-  EXPECT_EQ(first.hit_hash, second.hit_hash);
-  EXPECT_EQ(first.log->rows[7].words, second.log->rows[7].words);
-  options.samples = 2;
-  const Frame several = built.render(options);
-  options.seed = 98;
-  EXPECT_FALSE(same_bytes(several.image, built.render(options).image));
-}
-
-TEST(Samples, TheLogHasAllOfAPixelInOrder) {
-  const Built built(scenes::make_procedural("balls:1"), "octree");
-  const RenderOptions options{.width = 9, .height = 8, .max_depth = 3, .samples = 6, .record = true};
-  const Frame frame = built.render(options);
-  const WorkLog& log = *frame.log;
-  EXPECT_EQ(log.samples, 6U);
-  const LogTotals totals = totals_of(log);
-  EXPECT_EQ(totals.rays[0], 9U * 8U * 6U);
-  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
-    EXPECT_EQ(totals.rays[kind], frame.rays.traced[kind]);
-  }
-  for (std::uint32_t y = 0; y < log.height; ++y) {
-    for (std::uint32_t x = 0; x < log.width; ++x) {
-      ASSERT_EQ(marti::test::samples_of_pixel(log, x, y).size(), 6U);
-      ASSERT_EQ(log.pixel(x, y)[0], camera_ray);
-    }
-  }
-}
-
 TEST(Samples, TheWeightCutIsOfASampleAndNotOfItsShareOfThePixel) {
   scenes::Scene scene = test::looking_down(2.0);
   scene.materials.emplace_back();
@@ -175,15 +141,6 @@ TEST(Floats, DifferFromDoublesByRoundingInMostPixels) {
     EXPECT_LT(equal, floats.image.pixels.size()) << scene;
     EXPECT_LT(far, floats.image.pixels.size() / 50) << scene << ": edges that flip";
     options.voxel_cut = 1.0;
-    EXPECT_THROW((void)built.render(options), sim::UserError);
-  }
-}
-
-TEST(Samples, AreRefusedOutOfRange) {
-  const Built built(partly_covered(0.0, 0.0));
-  for (const std::uint32_t samples : {0U, 1025U}) {
-    RenderOptions options = test::one_pixel();
-    options.samples = samples;
     EXPECT_THROW((void)built.render(options), sim::UserError);
   }
 }

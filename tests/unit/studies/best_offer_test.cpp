@@ -78,15 +78,6 @@ RC_GTEST_PROP(Pareto, IsWhatNoOtherOfferBeats, ()) {
   }
 }
 
-// The best for a budget is on the front, and each of the front is the best for its own price.
-RC_GTEST_PROP(Pareto, HoldsTheBestForEveryBudget, ()) {
-  const std::vector<Offer> offers = random_offers();
-  const Better better = *rc::gen::element(Better::lower, Better::higher);
-  for (const std::size_t i : pareto_front(offers, better)) {
-    RC_ASSERT(best_within(offers, offers[i].cost, better) == i);
-  }
-}
-
 // In binary numbers 3 * (3.3 + 16 * 0.1) + 8.8 is more than 23.5.
 TEST(Cost, FitsABudgetOfTheDecimalPrices) {
   const Prices prices{8.8, 3.3, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};

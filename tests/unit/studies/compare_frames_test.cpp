@@ -126,22 +126,19 @@ TEST(CompareFrames, SettingsAreTyped) {
 // Points of two frames: even machines render the frame of the result, odd ones another, of other pixels or of
 // another scene with equal pixels and hits.
 fs::path write_two_frames(const fs::path& directory, std::size_t machines, bool other_pixels = true) {
-  fs::create_directories(directory);
-  SweepStore store(directory / "results.sqlite", test::made_plan(machines));
-  for (std::size_t frame = 0; frame < 2; ++frame) {
+  const auto row_of = [](std::size_t machine) {
+    SweepRow row = test::plain_row(machine);
+    row.counters[0] = static_cast<std::int64_t>(1000 + 37 * machine % 5);
+    return row;
+  };
+  test::write_store(directory / "results.sqlite", test::made_plan(machines), row_of, [&](std::size_t frame) {
     FrameRow row = test::made_frame_row(frame);
     const std::string hash = frame == 0 ? "00000000000000aa" : "00000000000000bb";
     row.image_hash = other_pixels ? hash : "00000000000000cc";
     row.hit_hash = "00000000000000dd";
     row.scene_hash = other_pixels ? "00000000000000ee" : hash;
-    store.add_frame(frame, row, 1);
-  }
-  for (std::size_t machine = 0; machine < machines; ++machine) {
-    SweepRow row = test::plain_row(machine);
-    row.counters[0] = static_cast<std::int64_t>(1000 + 37 * machine % 5);
-    store.add_result(machine, row, 1);
-  }
-  store.close();
+    return row;
+  });
   return directory;
 }
 
@@ -222,17 +219,11 @@ TEST(CompareFrames, SweepsWithTheSameAxesAreJoinedByThem) {
       settings.push_back({"packets.width", packets, false, ""});
       machine.settings = pool.share(std::move(settings));
     }
-    fs::create_directories(directory.path() / name);
-    SweepStore store(directory.path() / name / "results.sqlite", plan);
-    for (std::size_t frame = 0; frame < 2; ++frame) {
-      store.add_frame(frame, test::made_frame_row(frame), 1);
-    }
-    for (std::size_t i = 0; i < machines; ++i) {
-      SweepRow row = test::plain_row(i);
-      row.counters[0] = factor * (1000 + static_cast<std::int64_t>(i));
-      store.add_result(i, row, 1);
-    }
-    store.close();
+    test::write_store(directory.path() / name / "results.sqlite", plan, [&](std::size_t machine) {
+      SweepRow row = test::plain_row(machine);
+      row.counters[0] = factor * (1000 + static_cast<std::int64_t>(machine));
+      return row;
+    });
     return directory.path() / name;
   };
   const fs::path a = fill("a", 6, 1, "8");
@@ -271,13 +262,10 @@ TEST(CompareFrames, TheTimesOfTwoSweepsAddUp) {
     }
     plan.axes = {"machine.nodes"};
     plan.frames.push_back({test::made_key(100), runs[0].frame_config, {}});
-    fs::create_directories(directory.path() / name);
-    SweepStore store(directory.path() / name / "results.sqlite", plan);
-    store.add_frame(0, frame_row(runs[0].functional, 0), 1);
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      store.add_result(i, sweep_row(runs[i].machine, runs[i].timed), 1);
-    }
-    store.close();
+    test::write_store(
+        directory.path() / name / "results.sqlite", plan,
+        [&](std::size_t i) { return sweep_row(runs[i].machine, runs[i].timed); },
+        [&](std::size_t) { return frame_row(runs[0].functional, 0); });
     return directory.path() / name;
   };
   const json found = compared(fill("a", {}), fill("b", {"cache.size=512B", "node.clock=50MHz"}));

@@ -55,15 +55,13 @@ void write(const fs::path& file, const std::string& text) {
 
 // The run as the only point of a sweep.
 void write_sweep(const fs::path& file, const RunResult& run) {
-  fs::create_directories(file.parent_path());
   SweepPlan plan;
   plan.frames.push_back({test::made_key(1), run.frame_config, {}});
   plan.machines.push_back({test::made_key(2), 0, 0, run.machine, SettingsPool().share(run.values)});
   plan.points.push_back({{}, 0, 0, 1.0});
-  SweepStore store(file, plan);
-  store.add_frame(0, frame_row(run.functional, 0), 1);
-  store.add_result(0, sweep_row(run.machine, run.timed), 1);
-  store.close();
+  test::write_store(
+      file, plan, [&](std::size_t) { return sweep_row(run.machine, run.timed); },
+      [&](std::size_t) { return frame_row(run.functional, 0); });
 }
 
 class ComparedMachines : public testing::TestWithParam<std::vector<std::string>> {};
@@ -139,18 +137,14 @@ TEST(Compare, SweepsAreMatchedBySettings) {
   const TemporaryDirectory directory;
   const fs::path a = directory.path() / "a" / "results.sqlite";
   const fs::path b = directory.path() / "b" / "results.sqlite";
-  fs::create_directories(a.parent_path());
-  fs::create_directories(b.parent_path());
   const auto fill = [](const fs::path& file, std::size_t first, bool changed) {
-    SweepStore store(file, test::made_plan(8, first));
-    for (std::size_t i = 0; i < 7; ++i) {
+    test::write_store(file, test::made_plan(8, first), [&](std::size_t i) -> std::optional<SweepRow> {
       SweepRow row = test::made_row(first + i);
       if (changed && first + i == 6) {
         row.counters[0] = 2 * *row.counters[0];
       }
-      store.add_result(i, row, 1);
-    }
-    store.close();
+      return i < 7 ? std::optional(row) : std::nullopt;
+    });
   };
   fill(a, 0, false);
   fill(b, 4, true);
@@ -240,29 +234,19 @@ void expect_comparison_of_each_point(const std::string& result, const std::strin
 TEST(Compare, AResultWithASweepIsItsComparisonWithEachPoint) {
   const TemporaryDirectory directory;
   const std::string sweep = (directory.path() / "sweep").string();
-  fs::create_directories(sweep);
+  SweepPlan plan = test::made_plan(12);
+  // Two points of one machine.
+  plan.points[7].machine = plan.points[4].machine;
+  test::write_store(fs::path(sweep) / "results.sqlite", plan, [](std::size_t machine) {
+    // Some frame times are equal.
+    SweepRow row = test::plain_row(machine);
+    row.counters[0] = static_cast<std::int64_t>(1000 + 37 * machine % 5);
+    return machine % 4 != 1 ? std::optional(row) : std::nullopt;
+  });
   std::vector<std::int64_t> timed;
-  {
-    SweepPlan plan = test::made_plan(12);
-    // Two points of one machine.
-    plan.points[7].machine = plan.points[4].machine;
-    SweepStore store(fs::path(sweep) / "results.sqlite", plan);
-    for (std::size_t frame = 0; frame < 2; ++frame) {
-      store.add_frame(frame, test::made_frame_row(frame), 1);
-    }
-    for (std::size_t machine = 0; machine < 12; ++machine) {
-      if (machine % 4 != 1) {
-        // Some frame times are equal.
-        SweepRow row = test::plain_row(machine);
-        row.counters[0] = static_cast<std::int64_t>(1000 + 37 * machine % 5);
-        store.add_result(machine, row, 1);
-      }
-    }
-    store.close();
-    for (std::size_t point = 0; point < 12; ++point) {
-      if (plan.points[point].machine % 4 != 1) {
-        timed.push_back(static_cast<std::int64_t>(point));
-      }
+  for (std::size_t point = 0; point < 12; ++point) {
+    if (plan.points[point].machine % 4 != 1) {
+      timed.push_back(static_cast<std::int64_t>(point));
     }
   }
   expect_comparison_of_each_point(sweep + ":2", sweep, 12, timed, true);
@@ -311,13 +295,9 @@ TEST(Compare, RefusesASweepOrAResultWithoutFrameTimes) {
 TEST(Compare, ABrokenPointIsOfASweep) {
   const TemporaryDirectory directory;
   const fs::path store = directory.path() / "sweep" / "results.sqlite";
-  fs::create_directories(store.parent_path());
-  {
-    SweepStore made(store, test::made_plan(2));
-    made.add_frame(0, test::made_frame_row(0), 1);
-    made.add_result(0, SweepRow{Counts(counted_figures().size()), {}}, 1);
-    made.close();
-  }
+  test::write_store(store, test::made_plan(2), [](std::size_t /*machine*/) {
+    return SweepRow{Counts(counted_figures().size()), {}};
+  });
   const SweepReader reader(store);
   const RunJson point = point_result(reader, 0, "sweep:0");
   EXPECT_EQ(point.part("figures.machine").file(), "sweep:0");

@@ -88,11 +88,7 @@ std::vector<Timed> time_frames(std::shared_ptr<const scenes::PoseSource> source,
   sequence.visit([&](const PosedFrame& pose) {
     const FrameTree* before = frames.empty() ? nullptr : &frames.back().tree;
     Timed frame{make_frame_tree(before, pose.scene, options), nullptr, {}};
-    processors::program::RenderOptions render;
-    render.width = 12;
-    render.height = 8;
-    render.max_depth = 2;
-    render.record = true;
+    const processors::program::RenderOptions render{.width = 12, .height = 8, .max_depth = 2, .record = true};
     frame.log =
         processors::program::render(pose.scene, *frame.tree.triangles, *frame.tree.octree, render).log;
     frame.ways = ways.time(*frame.log, frame.tree.update ? &*frame.tree.update : nullptr);
@@ -145,22 +141,15 @@ TEST(FrameWays, WhereNothingMovesNothingIsBuiltAgain) {
 TEST(FrameWays, WhereEverythingMovesNothingIsKept) {
   const auto frames = time_frames(std::make_shared<Shaken>([](std::size_t) { return true; }), 3,
                                   machine_of(3, processors::machine::InitialTree::level, 1));
+  const TreeChange first = change_of(frames[0].tree);
+  EXPECT_EQ(first.altered, first.nodes) << "there was none before";
+  EXPECT_EQ(first.sorted, first.all_sorted);
   for (const Timed& frame : frames) {
     EXPECT_EQ(way(frame, FrameWay::partial).all_splits(), branches_of(frame.tree.topology()));
     expect_equal(way(frame, FrameWay::partial), way(frame, FrameWay::rebuild_all));
     // All nodes are P nodes again: as with nothing built beforehand.
     expect_equal(way(frame, FrameWay::partial_dynamic), way(frame, FrameWay::dynamic));
   }
-}
-
-TEST(FrameWays, TheFirstFrameHasNothingToKeep) {
-  const auto frames = time_frames(std::make_shared<Shaken>([](std::size_t) { return true; }), 1,
-                                  machine_of(2, processors::machine::InitialTree::rule));
-  expect_equal(way(frames[0], FrameWay::partial), way(frames[0], FrameWay::rebuild_all));
-  expect_equal(way(frames[0], FrameWay::partial_dynamic), way(frames[0], FrameWay::dynamic));
-  const TreeChange change = change_of(frames[0].tree);
-  EXPECT_EQ(change.altered, change.nodes);
-  EXPECT_EQ(change.sorted, change.all_sorted);
 }
 
 /// The result of carried_starts, computed from kept branches upwards instead of from the leaves.
@@ -255,10 +244,7 @@ RC_GTEST_PROP(FrameWays, EveryBranchIsKeptOrSplitOrLeft, (std::uint64_t seed)) {
 TEST(FrameWays, OfPrivateTreesThatIsKeptWhichAllHave) {
   const scenes::Scene scene = scenes::make_procedural("teapot:2:pot");
   const FrameTree tree = make_frame_tree(nullptr, scene, {});
-  processors::program::RenderOptions render;
-  render.width = 8;
-  render.height = 8;
-  render.record = true;
+  const processors::program::RenderOptions render{.width = 8, .height = 8, .record = true};
   const auto log = processors::program::render(scene, *tree.triangles, *tree.octree, render).log;
   const NodeVisits visits = count_visits(*log);
   processors::machine::MachineConfig machine = machine_of(1, processors::machine::InitialTree::level, 2);

@@ -121,12 +121,8 @@ struct CountingVisitor {
 };
 
 TEST(Accesses, AreThoseOfAVisitorThatCounts) {
-  processors::program::RenderOptions options;
-  options.width = 40;
-  options.height = 30;
-  options.max_depth = 1;
-  options.shadows = false;
-  options.record = true;
+  const processors::program::RenderOptions options{
+      .width = 40, .height = 30, .max_depth = 1, .shadows = false, .record = true};
   const Rendered rendered = render("teapot:5", options);
   const auto& octree = dynamic_cast<const accel::StructureOf<accel::Octree>&>(*rendered.structure).concrete();
   CountingVisitor visitor{octree.topology()};
@@ -149,11 +145,7 @@ TEST(Accesses, AreThoseOfAVisitorThatCounts) {
 }
 
 TEST(Accesses, AddUpToTheLogsTotals) {
-  processors::program::RenderOptions options;
-  options.width = 48;
-  options.height = 48;
-  options.max_depth = 3;
-  options.record = true;
+  const processors::program::RenderOptions options{.width = 48, .height = 48, .max_depth = 3, .record = true};
   const Rendered rendered = render("gears:1", options);
   const studies::paper::NodeVisits visits = studies::paper::count_visits(*rendered.frame.log);
   const processors::program::LogTotals totals = processors::program::totals_of(*rendered.frame.log);
@@ -191,11 +183,7 @@ TEST(Levels, AreTheStructuresOwnStatistics) {
 
 // Every level more that is built before the frame can only add nodes; what is touched is never missing.
 TEST(LazyLevels, GrowWithTheInitialLevel) {
-  processors::program::RenderOptions options;
-  options.width = 32;
-  options.height = 32;
-  options.max_depth = 2;
-  options.record = true;
+  const processors::program::RenderOptions options{.width = 32, .height = 32, .max_depth = 2, .record = true};
   const Rendered rendered = render("teapot:6:pot", options);
   const accel::Topology& topology = rendered.frame.log->topology;
   const studies::paper::NodeVisits visits = studies::paper::count_visits(*rendered.frame.log);

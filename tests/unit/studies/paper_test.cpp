@@ -90,6 +90,17 @@ TEST(Paper, SharesAddUpToOne) {
   }
 }
 
+// The nodes of all levels together.
+studies::paper::LevelCount sum_of(const std::vector<studies::paper::LevelCount>& levels) {
+  studies::paper::LevelCount sum;
+  for (const studies::paper::LevelCount& level : levels) {
+    sum.branches += level.branches;
+    sum.leaves += level.leaves;
+    sum.partial += level.partial;
+  }
+  return sum;
+}
+
 // The tree that the host builds while rays are traced is the one that the log says they need.
 TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
   sim::Config config =
@@ -101,17 +112,11 @@ TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
     const auto outcomes = studies::paper::measure_host(paper, traced);
     ASSERT_GE(outcomes.size(), 4U);
     for (const studies::paper::HostOutcome& outcome : outcomes) {
-      const auto levels =
-          count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level);
-      std::uint64_t nodes = 0;
-      std::uint64_t partial = 0;
-      for (const studies::paper::LevelCount& level : levels) {
-        nodes += level.nodes();
-        partial += level.partial;
-      }
-      EXPECT_EQ(outcome.nodes, nodes) << studies::paper::name_of(run) << " level " << outcome.initial.level;
-      EXPECT_EQ(outcome.partial, partial)
-          << studies::paper::name_of(run) << " level " << outcome.initial.level;
+      SCOPED_TRACE(studies::paper::name_of(run) + " level " + std::to_string(outcome.initial.level));
+      const studies::paper::LevelCount all =
+          sum_of(count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level));
+      EXPECT_EQ(outcome.nodes, all.nodes());
+      EXPECT_EQ(outcome.partial, all.partial);
       EXPECT_GE(outcome.build_seconds, 0.0);
       EXPECT_GT(outcome.render_seconds, 0.0);
     }
@@ -135,17 +140,10 @@ TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
     for (const studies::paper::LevelOutcome& outcome : runs[i].levels) {
       const auto levels =
           count_lazy_levels(traced[i].log->topology, traced[i].visits.touched, outcome.initial.level);
-      std::uint64_t nodes = 0;
-      std::uint64_t partial = 0;
-      std::uint64_t branches = 0;
-      for (const studies::paper::LevelCount& level : levels) {
-        nodes += level.nodes();
-        partial += level.partial;
-        branches += level.branches;
-      }
-      EXPECT_EQ(outcome.nodes, nodes) << outcome.initial.level;
-      EXPECT_EQ(outcome.partial, partial) << outcome.initial.level;
-      EXPECT_EQ(outcome.splits, branches) << outcome.initial.level;
+      const studies::paper::LevelCount all = sum_of(levels);
+      EXPECT_EQ(outcome.nodes, all.nodes()) << outcome.initial.level;
+      EXPECT_EQ(outcome.partial, all.partial) << outcome.initial.level;
+      EXPECT_EQ(outcome.splits, all.branches) << outcome.initial.level;
       EXPECT_EQ(outcome.bytes, bytes_of(levels, paper.machine.layout)) << outcome.initial.level;
       EXPECT_EQ(processors::cost::sum_of(outcome.time), paper.machine.all_nodes() * outcome.total());
     }

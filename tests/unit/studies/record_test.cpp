@@ -14,7 +14,7 @@
 #include "studies/run/record/heat_map.h"
 #include "studies/run/record/observers.h"
 #include "studies/run/record/timeline.h"
-#include "tests/cli/shell.h"
+#include "tests/support/files.h"
 #include "tests/support/random_machine.h"
 #include "tests/support/temporary_directory.h"
 
@@ -31,11 +31,15 @@ using processors::replay::MachineResult;
 using processors::walk::NodeState;
 
 MachineResult watched(const processors::program::WorkLog& log, const MachineConfig& machine,
-                      processors::walk::Observer& observer) {
+                      processors::walk::Observer& observer, processors::path::PathRecorder* path = nullptr) {
   Observers all;
+  if (path != nullptr) {
+    all.add(*path);
+  }
   all.add(observer);
   processors::replay::ReplayOptions options;
   options.observer = &all;
+  options.path = path;
   return processors::replay::replay(log, machine, options);
 }
 
@@ -130,36 +134,7 @@ TEST(Timelines, HoldTheWholeFrameNodeByNode) {
   }
 }
 
-TEST(Timelines, ShowTheCriticalPathInATrackOfItsOwn) {
-  const test::TemporaryDirectory directory;
-  test::Random random(7);
-  const processors::program::WorkLog log = test::small_log(random);
-  MachineConfig machine = test::random_machine(random);
-  const std::filesystem::path file = directory.path() / "timeline.json";
-  Timeline timeline(file, {});
-  processors::path::PathRecorder path({}, processors::path::PathPieces::no_fold);
-  timeline.mark(&path);
-  Observers all;
-  all.add(path);
-  all.add(timeline);
-  processors::replay::ReplayOptions options;
-  options.observer = &all;
-  options.path = &path;
-  const MachineResult result = processors::replay::replay(log, machine, options);
-  timeline.commit();
-  Slices slices = read_timeline(file);
-  EXPECT_EQ(slices.events, timeline.events());
-  EXPECT_TRUE(slices.names.contains("critical path"));
-  auto& track = slices.tracks[static_cast<int>(machine.all_nodes()) + 1];
-  EXPECT_EQ(static_cast<std::int64_t>(track.size()), path.path().pieces);
-  sim::Ticks end = result.end;
-  for (const auto& [from, to] : track) {
-    EXPECT_EQ(to, end);
-    end = from;
-  }
-  EXPECT_EQ(end, 0);
-}
-
+// The critical path has a track of its own, which ends where its limit is reached.
 TEST(Timelines, CutNodesAndCriticalPathEachForItself) {
   const test::TemporaryDirectory directory;
   const Machine machine(7);
@@ -169,37 +144,40 @@ TEST(Timelines, CutNodesAndCriticalPathEachForItself) {
     auto timeline = std::make_unique<Timeline>(file, TimelineOptions{.most_events = limit});
     processors::path::PathRecorder path({}, processors::path::PathPieces::no_fold);
     timeline->mark(&path);
-    Observers all;
-    all.add(path);
-    all.add(*timeline);
-    processors::replay::ReplayOptions options;
-    options.observer = &all;
-    options.path = &path;
-    (void)processors::replay::replay(machine.log, machine.config, options);
+    sim::Ticks at = watched(machine.log, machine.config, *timeline, &path).end;
     timeline->commit();
-    return timeline;
+    Slices slices = read_timeline(file);
+    EXPECT_TRUE(slices.names.contains("critical path"));
+    for (const auto& [from, to] : slices.tracks[path_track]) {
+      EXPECT_EQ(to, at) << "from the end on without gaps";
+      at = from;
+    }
+    EXPECT_EQ(at == 0, path.path().pieces <= limit);
+    return std::pair(std::move(timeline), std::move(slices));
   };
-  (void)record(1'000'000);
-  const Slices whole = read_timeline(file);
+  const Slices whole = record(1'000'000).second;
   EXPECT_FALSE(whole.note);
   const auto& path = whole.tracks.at(path_track);
   const auto length = static_cast<std::int64_t>(path.size());
   const std::int64_t of_nodes = whole.events - length;
   ASSERT_GT(length, 10);
-  for (const std::int64_t limit : {std::int64_t{1}, std::int64_t{10}, length - 1, length, of_nodes - 1}) {
-    const auto timeline = record(limit);
-    Timeline nodes_only(directory.path() / "nodes.json", {.most_events = limit});
-    (void)watched(machine.log, machine.config, nodes_only);
-    const Slices slices = read_timeline(file);
+  ASSERT_GT(of_nodes, length);
+  for (const std::int64_t limit :
+       {std::int64_t{1}, std::int64_t{10}, length - 1, length, of_nodes - 1, of_nodes}) {
+    const auto& [timeline, slices] = record(limit);
     const std::int64_t shown = std::min(limit, length);
     EXPECT_EQ(slices.events, timeline->events());
     EXPECT_EQ(slices.events, std::min(limit, of_nodes) + shown);
     EXPECT_TRUE(std::equal(path.begin(), path.begin() + shown, slices.tracks.at(path_track).begin(),
                            slices.tracks.at(path_track).end()));
-    EXPECT_EQ(timeline->cut_at(), nodes_only.cut_at());
+    EXPECT_EQ(timeline->cut_at().has_value(), limit < of_nodes);
     EXPECT_EQ(timeline->path_cut_at(),
               limit < length ? std::optional(path[static_cast<std::size_t>(shown) - 1].first) : std::nullopt);
-    EXPECT_EQ(slices.note, timeline->cut_at() || timeline->path_cut_at());
+    EXPECT_EQ(slices.note, limit < of_nodes);
+    Timeline nodes_only(directory.path() / "nodes.json", {.most_events = limit});
+    (void)watched(machine.log, machine.config, nodes_only);
+    EXPECT_EQ(timeline->cut_at(), nodes_only.cut_at());
+    EXPECT_EQ(nodes_only.events(), std::min(limit, of_nodes));
   }
 }
 
@@ -216,24 +194,6 @@ TEST(Timelines, KeepToTheirWindow) {
   for (const auto& [track, pieces] : slices.tracks) {
     EXPECT_EQ(pieces.front().first, end / 3);
     EXPECT_EQ(pieces.back().second, end / 2);
-  }
-}
-
-TEST(Timelines, AreCutAtTheirLimitAndSaySo) {
-  const test::TemporaryDirectory directory;
-  const Machine machine(7);
-  const std::filesystem::path file = directory.path() / "timeline.json";
-  Timeline whole(file, {});
-  (void)watched(machine.log, machine.config, whole);
-  ASSERT_GT(whole.events(), 10);
-  for (const std::int64_t limit : {std::int64_t{1}, std::int64_t{10}, whole.events() - 1, whole.events()}) {
-    Timeline timeline(file, {.most_events = limit});
-    (void)watched(machine.log, machine.config, timeline);
-    timeline.commit();
-    const Slices slices = read_timeline(file);
-    EXPECT_EQ(slices.events, limit);
-    EXPECT_EQ(slices.note, limit < whole.events());
-    EXPECT_EQ(timeline.cut_at().has_value(), limit < whole.events());
   }
 }
 

@@ -29,22 +29,16 @@ class ReadReportPoints : public testing::Test {
   // Five machines on two frames, four of them timed.
   void make(const std::vector<std::string>& changes) {
     fs::remove(file_);
-    {
-      SweepStore store(file_, made_plan(5));
-      for (std::size_t frame = 0; frame < 2; ++frame) {
-        FrameRow row = test::made_frame_row(frame);
-        row.image_hash = test::made_key(frame).substr(16);
-        store.add_frame(frame, row, 1);
-      }
-      for (std::size_t machine = 0; machine < 4; ++machine) {
-        SweepRow row;
-        for (std::size_t i = 0; i < counted_figures().size(); ++i) {
-          row.counters.emplace_back(1000 + 10 * machine);
-        }
-        store.add_result(machine, row, 1);
-      }
-      store.close();
-    }
+    const auto row_of = [](std::size_t machine) {
+      return machine == 4
+                 ? std::nullopt
+                 : std::optional(SweepRow{Counts(counted_figures().size(), 1000 + 10 * machine), {}});
+    };
+    test::write_store(file_, made_plan(5), row_of, [](std::size_t frame) {
+      FrameRow row = test::made_frame_row(frame);
+      row.image_hash = test::made_key(frame).substr(16);
+      return row;
+    });
     if (!changes.empty()) {
       SqliteConnection connection(file_, SqliteConnection::Access::write);
       for (const std::string& change : changes) {

@@ -6,6 +6,7 @@
 
 #include "studies/sweep/plan/sweep_keys.h"
 #include "tests/support/user_error.h"
+#include "tests/unit/studies/sweep_tables.h"
 
 namespace marti::studies {
 
@@ -78,59 +79,51 @@ RC_GTEST_PROP(SweepFilter, DecidesAsTheSameExpressionInCpp, ()) {
 }
 
 TEST(SweepFilter, RefusesWhatIsNoExpressionOverKeys) {
-  struct Wrong {
-    const char* text;
-    const char* message;
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"", "here: names no key"},
+      {"1 = 1", "here: names no key"},
+      {"cache.sise > 3", "here: unknown name \"cache.sise\" (did you mean \"cache.size\"?)"},
+      {"cache.replacement = lru", "here: unknown name \"lru\"; texts are written in single quotation marks"},
+      {"cache > 3", "here: \"cache\" is a section, not a key"},
+      {"cache.size > '64 KiB'", "here: '64 KiB' is a text, which no size, frequency or duration equals"},
+      {"cache.size > '64KiB'", "here: '64KiB' is a text"},
+      {"node.clock > '33 MHz'", "here: '33 MHz' is a text"},
+      {"cache.size > 64 KB", "here: \"64 KB\": unknown unit"},
+      {"cache.size > 0.3 B", "here: "},
+      {"cache.size > \"x\"", "here: write texts in single quotation marks"},
+      {"cache.size > 3; drop table x", "here: the character ';' means nothing here"},
+      {"cache.size > 3) or (1", "here: a parenthesis is closed that was not opened"},
+      {"(cache.size > 3", "here: a parenthesis is not closed"},
+      {"cache.size > 3 -- x", "here: a filter has no comments"},
+      {"cache.size > /* x */ 3", "here: a filter has no comments"},
+      {"cache.size in (select 3)", "here: unknown name \"select\""},
+      {"cache.size > random()", "here: unknown name \"random\""},
+      {"load_extension('x') = cache.size", "here: unknown name \"load_extension\""},
+      {"cache.size > abs", "here: \"abs\" is a function"},
+      {"cache.size > ?1", "here: the character '?' means nothing here"},
+      {"cache.size >", "here: is no whole expression (SQLite: near \")\": syntax error)"},
+      {"cache.size, cache.ways", "here: is no whole expression (SQLite: row value misused)"},
+      {"cache.replacement = 'lru", "here: a text in single quotation marks has no end"},
+      {"cache.size cache.ways", "here: is no whole expression (SQLite: near "},
+      // SQLite would compare these, and choose other points than intended.
+      {"machine.nodes < '2'", "here: machine.nodes is no text and cannot be compared with '2'"},
+      {"not (machine.nodes <> '4')", "here: machine.nodes is no text"},
+      {"cache.size > 'x' or machine.nodes > 0", "here: cache.size is no text"},
+      {"cache.replacement <> 'lruu'",
+       "here: cache.replacement is never 'lruu' (did you mean \"lru\"?); it is lru, fifo, random or "
+       "plru"},
+      {"interconnect.kind in ('bus', 'crosbar')", "here: interconnect.kind is never 'crosbar'"},
+      {"cache.replacement > 3", "here: cache.replacement is a text and cannot be compared with 3"},
+      {"cache.size < 4 MHz", "here: cache.size is a size and cannot be compared with 4 MHz"},
+      {"cache.size between 1 KiB and 4 ns", "here: cache.size is a size and cannot be compared with 4 ns"},
+      {"substr(cache.replacement, 1, 1) = 'l' and machine.nodes * cache.size <= 4 MiB", "no UserError"},
+      {"cache.replacement like 'l%' and cache.size / 3 > 2", "no UserError"},
+      {"case when machine.nodes > 1 then 'a' else 'b' end = 'a'", "no UserError"},
+      {"interconnect.kind = 'bus' and cache.size between 1 KiB and 4 KiB and machine.nodes < 3",
+       "no UserError"},
+      {"max(cache.size, abs(-9223372036854775808)) = 1", "no UserError"},
   };
-  for (const Wrong& wrong : std::initializer_list<Wrong>{
-           {"", "here: names no key"},
-           {"1 = 1", "here: names no key"},
-           {"cache.sise > 3", "here: unknown name \"cache.sise\" (did you mean \"cache.size\"?)"},
-           {"cache.replacement = lru",
-            "here: unknown name \"lru\"; texts are written in single quotation marks"},
-           {"cache > 3", "here: \"cache\" is a section, not a key"},
-           {"cache.size > '64 KiB'", "here: '64 KiB' is a text, which no size, frequency or duration equals"},
-           {"cache.size > '64KiB'", "here: '64KiB' is a text"},
-           {"node.clock > '33 MHz'", "here: '33 MHz' is a text"},
-           {"cache.size > 64 KB", "here: \"64 KB\": unknown unit"},
-           {"cache.size > 0.3 B", "here: "},
-           {"cache.size > \"x\"", "here: write texts in single quotation marks"},
-           {"cache.size > 3; drop table x", "here: the character ';' means nothing here"},
-           {"cache.size > 3) or (1", "here: a parenthesis is closed that was not opened"},
-           {"(cache.size > 3", "here: a parenthesis is not closed"},
-           {"cache.size > 3 -- x", "here: a filter has no comments"},
-           {"cache.size > /* x */ 3", "here: a filter has no comments"},
-           {"cache.size in (select 3)", "here: unknown name \"select\""},
-           {"cache.size > random()", "here: unknown name \"random\""},
-           {"load_extension('x') = cache.size", "here: unknown name \"load_extension\""},
-           {"cache.size > abs", "here: \"abs\" is a function"},
-           {"cache.size > ?1", "here: the character '?' means nothing here"},
-           {"cache.size >", "here: is no whole expression (SQLite: near \")\": syntax error)"},
-           {"cache.size, cache.ways", "here: is no whole expression (SQLite: row value misused)"},
-           {"cache.replacement = 'lru", "here: a text in single quotation marks has no end"},
-           {"cache.size cache.ways", "here: is no whole expression (SQLite: near "},
-           // SQLite would compare these, and choose other points than intended.
-           {"machine.nodes < '2'", "here: machine.nodes is no text and cannot be compared with '2'"},
-           {"not (machine.nodes <> '4')", "here: machine.nodes is no text"},
-           {"cache.size > 'x' or machine.nodes > 0", "here: cache.size is no text"},
-           {"cache.replacement <> 'lruu'",
-            "here: cache.replacement is never 'lruu' (did you mean \"lru\"?); it is lru, fifo, random or "
-            "plru"},
-           {"interconnect.kind in ('bus', 'crosbar')", "here: interconnect.kind is never 'crosbar'"},
-           {"cache.replacement > 3", "here: cache.replacement is a text and cannot be compared with 3"},
-           {"cache.size < 4 MHz", "here: cache.size is a size and cannot be compared with 4 MHz"},
-           {"cache.size between 1 KiB and 4 ns",
-            "here: cache.size is a size and cannot be compared with 4 ns"},
-           {"substr(cache.replacement, 1, 1) = 'l' and machine.nodes * cache.size <= 4 MiB", "no UserError"},
-           {"cache.replacement like 'l%' and cache.size / 3 > 2", "no UserError"},
-           {"case when machine.nodes > 1 then 'a' else 'b' end = 'a'", "no UserError"},
-           {"interconnect.kind = 'bus' and cache.size between 1 KiB and 4 KiB and machine.nodes < 3",
-            "no UserError"},
-           {"max(cache.size, abs(-9223372036854775808)) = 1", "no UserError"},
-       }) {
-    const std::string message = error_of(wrong.text);
-    EXPECT_EQ(message.substr(0, std::string(wrong.message).size()), wrong.message) << wrong.text;
-  }
+  test::expect_messages(wrong, [](const std::string& text) { return error_of(text); });
   EXPECT_EQ(error_of("point = 'a'", false), "here: there are no named points, so `point` has no value");
   EXPECT_EQ(error_of("cache.size > " + std::string(20'000, '1')), "here: has more than 10000 characters");
   EXPECT_NE(error_of("cache.size > " + std::string(3000, '(') + "1" + std::string(3000, ')')),

@@ -1,12 +1,15 @@
 // Plans and rows made up for tests of the store.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "sim/statistics.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/plan/sweep_row.h"
+#include "studies/sweep/store/sweep_store.h"
 #include "tests/support/store_dump.h"
 
 namespace marti::test {
@@ -109,6 +112,24 @@ inline studies::sweep::FrameRow made_frame_row(std::size_t frame) {
   row.scene_hash = row.image_hash = row.hit_hash = "0123456789abcdef";
   row.notes = {"first", "", "third"};
   return row;
+}
+
+/// Writes a store of the plan with the rows of its frames and of those machines that `row_of` gives one.
+template <class RowOf, class FrameRowOf = studies::sweep::FrameRow (*)(std::size_t)>
+void write_store(const std::filesystem::path& file, const studies::sweep::SweepPlan& plan,
+                 const RowOf& row_of, const FrameRowOf& frame_row_of = made_frame_row) {
+  std::filesystem::create_directories(file.parent_path());
+  studies::sweep::SweepStore store(file, plan);
+  for (std::size_t frame = 0; frame < plan.frames.size(); ++frame) {
+    store.add_frame(frame, frame_row_of(frame), 1);
+  }
+  for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
+    const std::optional<studies::sweep::SweepRow> row = row_of(machine);
+    if (row) {
+      store.add_result(machine, *row, 1);
+    }
+  }
+  store.close();
 }
 
 }  // namespace marti::test

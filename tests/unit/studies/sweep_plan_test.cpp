@@ -358,38 +358,33 @@ TEST(SweepPlan, PricesAreThoseOfTheMachines) {
 }
 
 TEST(SweepPlan, WrongPointsAreNamed) {
-  struct Wrong {
-    const char* text;
-    const char* message;
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"[sweep.axes]\nmachine.nodes = [1, 2]\ncache.ways = [4,\n 3]\ncache.size = [\"4 KiB\"]\n",
+       "s.toml:5: cache.size: "},
+      {"[sweep.axes]\nmachine.nodes = [2]\ncache.line = [\"32 B\", \"33 B\"]\n",
+       "s.toml:3: cache.line: must be a power of two, not 33 bytes (the point machine.nodes = 2, "
+       "cache.line = \"33 "
+       "B\"; sweep.skip_invalid = true leaves out such points)"},
+      {"[cache]\norganisation = \"none\"\n[sweep.axes]\nmachine.nodes = [1]\ncache.size = [1024]\n",
+       "s.toml:5: cache.size: is not used by any point of the sweep: it has no effect with "
+       "cache.organisation = \"none\""},
+      {"[cache]\norganisation = \"none\"\nsize = 1024\n[sweep.axes]\nmachine.nodes = [1]\n",
+       "s.toml:3: cache.size: is not used: it has no effect with cache.organisation = \"none\""},
+      {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\ncache.organisation = \"none\"\ncache.size = "
+       "3\n",
+       "s.toml:5: cache.size: is not used by the machine of [sweep.compare]: it has no effect"},
+      {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\ncache.seed = 3\n",
+       "s.toml:4: cache.seed: is not used by any machine of the sweep: only"},
+      {"[sweep.axes]\nframes.count = [2]\n", "s.toml:2: frames.count: 2 frames are asked for"},
+      {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\ncache.line = 33\n",
+       "s.toml:4: cache.line: must be a power of two, not 33 bytes (the machine of [sweep.compare])"},
+      {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\ncache.line = 33\n",
+       "s.toml:4: cache.line: must be a power of two, not 33 bytes (the base of the point "
+       "machine.nodes = 1; sweep.skip_invalid = true leaves out such points)"},
+      {"[sweep.axes]\nscene.source = [\"no.glb\"]\n", "s.toml:2: scene.source: there is no file no.glb"},
   };
-  for (const Wrong& wrong : std::initializer_list<Wrong>{
-           {"[sweep.axes]\nmachine.nodes = [1, 2]\ncache.ways = [4,\n 3]\ncache.size = [\"4 KiB\"]\n",
-            "s.toml:5: cache.size: "},
-           {"[sweep.axes]\nmachine.nodes = [2]\ncache.line = [\"32 B\", \"33 B\"]\n",
-            "s.toml:3: cache.line: must be a power of two, not 33 bytes (the point machine.nodes = 2, "
-            "cache.line = \"33 "
-            "B\"; sweep.skip_invalid = true leaves out such points)"},
-           {"[cache]\norganisation = \"none\"\n[sweep.axes]\nmachine.nodes = [1]\ncache.size = [1024]\n",
-            "s.toml:5: cache.size: is not used by any point of the sweep: it has no effect with "
-            "cache.organisation = \"none\""},
-           {"[cache]\norganisation = \"none\"\nsize = 1024\n[sweep.axes]\nmachine.nodes = [1]\n",
-            "s.toml:3: cache.size: is not used: it has no effect with cache.organisation = \"none\""},
-           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\ncache.organisation = \"none\"\ncache.size = "
-            "3\n",
-            "s.toml:5: cache.size: is not used by the machine of [sweep.compare]: it has no effect"},
-           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\ncache.seed = 3\n",
-            "s.toml:4: cache.seed: is not used by any machine of the sweep: only"},
-           {"[sweep.axes]\nframes.count = [2]\n", "s.toml:2: frames.count: 2 frames are asked for"},
-           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\ncache.line = 33\n",
-            "s.toml:4: cache.line: must be a power of two, not 33 bytes (the machine of [sweep.compare])"},
-           {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\ncache.line = 33\n",
-            "s.toml:4: cache.line: must be a power of two, not 33 bytes (the base of the point "
-            "machine.nodes = 1; sweep.skip_invalid = true leaves out such points)"},
-           {"[sweep.axes]\nscene.source = [\"no.glb\"]\n", "s.toml:2: scene.source: there is no file no.glb"},
-       }) {
-    const std::string message = user_error_of([&] { (void)plan_of(wrong.text); });
-    EXPECT_EQ(message.substr(0, std::string(wrong.message).size()), wrong.message) << wrong.text;
-  }
+  test::expect_messages(wrong,
+                        [](const std::string& text) { return user_error_of([&] { (void)plan_of(text); }); });
 }
 
 TEST(SweepPlan, AnAxisMaySwitchOffWhatTheFileDescribes) {

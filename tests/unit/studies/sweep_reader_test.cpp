@@ -84,13 +84,7 @@ TEST(SweepReader, ReadsBackWhatWasWritten) {
 TEST(SweepReader, DerivesRatios) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "results.sqlite";
-  {
-    SweepStore store(file, made_plan(machines));
-    for (std::size_t machine = 0; machine < machines; ++machine) {
-      store.add_result(machine, made_row(machine), 1);
-    }
-    store.close();
-  }
+  test::write_store(file, made_plan(machines), made_row);
   const SweepReader reader(file);
   const std::vector<std::string> names = {"speed_up", "times_faster", "hit_ratio", "cache.size",
                                           "bank_accesses"};
@@ -137,11 +131,7 @@ TEST(SweepReader, AStoreCanBeReadWhereNothingMayBeWritten) {
   const fs::path place = directory.path() / "a b?";
   fs::create_directory(place);
   const fs::path file = place / "results.sqlite";
-  {
-    SweepStore store(file, made_plan(2));
-    store.add_result(0, made_row(0), 1);
-    store.close();
-  }
+  test::write_store(file, made_plan(2), made_row);
   fs::permissions(file, fs::perms::owner_read);
   fs::permissions(place, fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_EQ(SweepReader(file).points().size(), 2U);

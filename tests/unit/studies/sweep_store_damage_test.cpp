@@ -73,12 +73,7 @@ std::string figures_of(const fs::path& file) {
 class DamagedStore : public testing::Test {
  protected:
   DamagedStore() {
-    SweepStore store(file_, made_plan(machines));
-    for (std::size_t i = 0; i < machines; ++i) {
-      store.add_frame(i, test::made_frame_row(i), 1);
-      store.add_result(i, test::plain_row(i), 1);
-    }
-    store.close();
+    test::write_store(file_, made_plan(machines), test::plain_row);
     bytes_ = sim::read_file(file_, std::int64_t{1} << 30);
   }
 
@@ -123,12 +118,7 @@ TEST_F(DamagedStore, AChangedByteIsRefusedOrWithoutConsequence) {
         continue;
       }
       const std::string going_on = user_error_of([&] {
-        SweepStore store(file_, made_plan(machines));
-        for (std::size_t machine = 0; machine < machines; ++machine) {
-          store.add_frame(machine, test::made_frame_row(machine), 1);
-          store.add_result(machine, test::plain_row(machine), 1);
-        }
-        store.close();
+        test::write_store(file_, made_plan(machines), test::plain_row);
         found = figures_of(file_);
       });
       EXPECT_TRUE(going_on != "no UserError" || found == expected) << "byte " << i << " ^ " << flipped;

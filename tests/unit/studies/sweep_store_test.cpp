@@ -11,6 +11,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/sqlite_connection.h"
 #include "studies/version.h"
 #include "tests/support/temporary_directory.h"
@@ -237,8 +238,10 @@ TEST(SweepStore, RefusesADamagedFile) {
     const fs::path cut = directory.path() / "cut.sqlite";
     fs::copy_file(file, cut, fs::copy_options::overwrite_existing);
     fs::resize_file(cut, left);
-    const std::string message = user_error_of([&] { SweepStore(cut, made_plan(40)); });
-    EXPECT_NE(message.find("is damaged"), std::string::npos) << left << " " << message;
+    for (const std::string& message : {user_error_of([&] { SweepStore(cut, made_plan(40)); }),
+                                       user_error_of([&] { (void)SweepReader(cut).points(); })}) {
+      EXPECT_NE(message.find("is damaged"), std::string::npos) << left << " " << message;
+    }
     EXPECT_EQ(fs::file_size(cut), left) << "it was touched";
   }
 }
