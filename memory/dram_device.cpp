@@ -160,7 +160,7 @@ DramCycle DramDevice::earliest_refresh(std::uint32_t rank) const {
 }
 
 DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed) {
-  const DramCycle start = closed || !has_open_row(rank) ? cycle : cycle + timing_.rp;
+  const DramCycle start = closed || !has_open_row(rank) ? cycle : cycle + std::max<DramCycle>(1, timing_.rp);
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     banks_[i].row = no_row;
     of(banks_[i].next, DramCommand::activate) = start + timing_.rfc;

@@ -82,7 +82,7 @@ class DramDevice {
   [[nodiscard]] DramCycle earliest_refresh(std::uint32_t rank) const;
   void refresh(std::uint32_t rank, DramCycle cycle);
   /// Closes the rows of a rank, all of whose commands are allowed at `cycle`, and refreshes it: at once if no
-  /// row was open or `closed`. Returns the cycle of the refresh.
+  /// row was open or `closed`, else one cycle later at the earliest. Returns the cycle of the refresh.
   DramCycle refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed);
   /// After so many cycles without another command each bank may be precharged, activated and refreshed.
   [[nodiscard]] DramCycle settling() const { return settling_; }

@@ -81,7 +81,9 @@ DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, 
       return first;
     }
     from = cycle + length;
-    if (command == DramCommand::activate) {
+    if (command == DramCommand::precharge) {
+      last_precharge_ = cycle;
+    } else {
       ++statistics_.activations;
       opened = true;
       prepared_ = from;
@@ -132,7 +134,7 @@ DramCycle DramInOrder::free_slot(DramCycle cycle, DramCycle length) const {
 void DramInOrder::refresh(DramCycle cycle) {
   // While nothing is asked for, each refresh begins when it is due: only the last one matters.
   const auto [more, last] = device_.due_refreshes(refresh_due_, cycle);
-  const bool idle = last >= std::max(last_column_, last_refresh_) + device_.settling();
+  const bool idle = last >= std::max({last_column_, last_precharge_, last_refresh_}) + device_.settling();
   DramCycle end = std::max(last_column_ + (two_command_buses_ ? 0 : column_cycles_), prepared_);
   for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
     if (idle) {
@@ -142,6 +144,7 @@ void DramInOrder::refresh(DramCycle cycle) {
       if (device_.has_open_row(rank)) {
         start = std::max(start, device_.earliest_precharge_all(rank));
         device_.precharge_all(rank, start);
+        ++start;
       }
       last_refresh_ = std::max(start, device_.earliest_refresh(rank));
       device_.refresh(rank, last_refresh_);

@@ -70,6 +70,8 @@ class DramInOrder {
   DramStatistics statistics_;
   DramCycle prepared_ = 0;      // from when on the next access may close and open rows
   DramCycle last_column_ = -1;  // cycle of the last read or write
+  // Cycle of the last precharge after which its burst waited, be it for its activation or for a refresh.
+  DramCycle last_precharge_ = 0;
   DramCycle refresh_due_;
   DramCycle last_refresh_ = 0;
   // Cycles of reads and writes from `prepared_` on; empty where these have a command bus of their own.
