@@ -206,11 +206,15 @@ class DynamicWalker {
         case Todo::make:
           make_child(copy, cursor, built);
           break;
-        case Todo::record:
+        case Todo::record: {
           cursor.todo = Todo::make;
-          write(cursor, addresses_.record(copy, topology_.nodes[cursor.node].first + cursor.child++),
+          const std::uint32_t child = topology_.nodes[cursor.node].first + cursor.child++;
+          // What is built before the frame is the database of all; a private tree's own records are empty
+          // then.
+          write(cursor, cursor.before ? addresses_.initial_record(child) : addresses_.record(copy, child),
                 node_bytes());
           break;
+        }
         case Todo::publish:
           cursor.todo = Todo::done;
           spend(cursor, build_ticks_.publish, 1);

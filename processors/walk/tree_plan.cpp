@@ -23,7 +23,8 @@ TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> sta
       starts_(std::move(starts)),
       places_(topology.nodes.size()),
       written_(topology.nodes.size()),
-      section_alignment_(config.layout.section_alignment) {
+      section_alignment_(config.layout.section_alignment),
+      record_alignment_(config.layout.record_alignment) {
   stride_ = config.layout.node_stride();
   for (std::uint32_t node = 0; node < places_.size(); ++node) {
     const accel::TopologyNode& branch = topology_.nodes[node];
@@ -96,7 +97,8 @@ void TreePlan::place_lists(const machine::MachineConfig& config) {
 void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_bytes) {
   const std::uint64_t alignment = std::max<std::uint64_t>(section_alignment_, line_bytes);
   dynamic_base_ = round_up(layout.end(), alignment);
-  lower_base_ = round_up(dynamic_base_ + eager_list_bytes_, alignment);
+  lower_base_ =
+      round_up(dynamic_base_ + eager_list_bytes_, std::max<std::uint64_t>(alignment, record_alignment_));
   end_ = first_block() + all_block_bytes_;
 }
 

@@ -92,6 +92,7 @@ class TreePlan {
   std::uint32_t slots_ = 0;
   std::uint64_t stride_ = 1;
   std::uint64_t section_alignment_;
+  std::uint64_t record_alignment_;
   memory::Address dynamic_base_ = 0;
   memory::Address lower_base_ = 0;
   memory::Address end_ = 0;

@@ -5,12 +5,15 @@
 
 #include <array>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "processors/cost/build_mix.h"
 #include "processors/cost/step_time.h"
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay.h"
+#include "processors/walk/record_places.h"
+#include "processors/walk/tree_plan.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"
 #include "tests/support/random_machine.h"
@@ -144,6 +147,8 @@ RC_GTEST_PROP(Dynamic, OneNodeBuildsThePrivateTreeThatItWouldShare, (std::uint64
   RC_ASSERT(a.entries == b.entries);
   RC_ASSERT(a.written_bytes == b.written_bytes);
   RC_ASSERT(a.locks == a.splits && b.locks == 0);
+  // The initial tree is the database's, and so is its cost.
+  RC_ASSERT(shared.build.start_up == own.build.start_up);
   test::expect_equal_counters(shared.steps(), own.steps());
   for (std::size_t level = 0; level < shared.build.levels.size(); ++level) {
     RC_ASSERT(shared.build.levels[level].branches == own.build.levels[level].branches);
@@ -279,6 +284,16 @@ TEST(Dynamic, WhatIsBuiltBeforehandWaitsForNoPrefetch) {
   EXPECT_EQ(with.contexts.counts().issued, 1)
       << "the line of the other two, which comes after the last write";
   EXPECT_EQ(with.build.start_up, without.build.start_up);
+}
+
+TEST(Dynamic, WhatIsBuiltBeginsWhereARecordMay) {
+  MachineConfig machine = tiny_machine(1);
+  machine.build.sharing = Sharing::shared;
+  machine.layout.section_alignment = 1;
+  machine.layout.record_alignment = 64;
+  std::optional<walk::TreePlan> plan;
+  (void)walk::layout_of(tiny_log(1), machine, plan);
+  EXPECT_EQ(plan->first_block() % 64, 0U);
 }
 
 TEST(Dynamic, PrivateTreesAreBuiltTwiceInMemoryOfTheirOwn) {
