@@ -61,6 +61,7 @@
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/ranks/ranks.h"
 #include "studies/tables/page_file.h"
+#include "studies/tables/result_directory.h"
 #include "studies/verify/verify_plan.h"
 #include "studies/version.h"
 
@@ -164,6 +165,7 @@ void run_command(const RunArguments& arguments) {
     run_within_command(arguments, config, std::move(options));
     return;
   }
+  tables::refuse_other_results(arguments.directory, tables::run_name);
   const sim::MadeDirectory made = show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {
     host::load_image_library();
@@ -208,6 +210,7 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  tables::refuse_other_results(arguments.directory, tables::database_name);
   tables::refuse_store_of_sweep(arguments.directory);
   const sim::MadeDirectory made = show::prepare_output(arguments.directory);
   if (!arguments.directory.empty()) {

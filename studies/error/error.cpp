@@ -11,6 +11,7 @@
 #include "studies/error/simulator_tables.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::error {
 
@@ -32,11 +33,12 @@ tables::StudyOutput simulator_error(const ErrorConfig& config) {
   part.tables = {method_table(study, errors), figure_table(study, errors), case_table(study),
                  level_table(study), measured_table(study)};
   part.host_tables = {time_table(study, errors), fastest_table(study, errors)};
-  part.report = fmt::format("Simulator: {} machines on {} frames\n\n{}\n{}\n", study.cases.size(),
-                            study.cases.back().frame + 1, tables::text_of(part.tables[0]),
-                            tables::text_of(part.tables[3]));
-  part.host_report = fmt::format("Simulator: run time, {} repeats\n\n{}\n{}\n", config.repeats,
-                                 tables::text_of(part.host_tables[0]), tables::text_of(part.host_tables[1]));
+  part.report = fmt::format("Simulator: {} on {}\n\n{}\n{}\n", tables::counted(study.cases.size(), "machine"),
+                            tables::counted(study.cases.back().frame + 1, "frame"),
+                            tables::text_of(part.tables[0]), tables::text_of(part.tables[3]));
+  part.host_report =
+      fmt::format("Simulator: run time, {}\n\n{}\n{}\n", tables::counted(config.repeats, "repeat"),
+                  tables::text_of(part.host_tables[0]), tables::text_of(part.host_tables[1]));
   return part;
 }
 

@@ -32,8 +32,9 @@ void declare_rendering_error_keys(sim::Schema& schema) {
                   "longest chains of rays, in the place of image.max_depth");
   schema.integer("error.rendering.reference_depth", 16, {2, max_ray_depth}, "rays",
                  "longest chain of rays of the reference of the above");
-  schema.reals("error.rendering.weights", {0.001, 0.01, 0.05, 0.1, 0.2, 0.5}, {1e-9, 1.0}, "",
-               "shares of a sample below which a ray is not traced, in the place of image.min_weight");
+  schema.reals(
+      "error.rendering.weights", {0.001, 0.01, 0.05, 0.1, 0.2, 0.5}, {1e-9, 1.0}, "",
+      "whitted: shares of a sample below which a ray is not traced, in the place of image.min_weight");
   schema.reals("error.rendering.voxel_cuts", {0.25, 1.0, 4.0, 16.0}, {1e-6, 1'000'000.0}, "pixels",
                "octree, no curved primitives: cuts, in the place of image.voxel_cut");
   schema.integer("error.rendering.seed", 1, {0, std::int64_t{1} << 62U}, "",

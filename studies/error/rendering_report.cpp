@@ -70,7 +70,7 @@ std::string precision_lines(const RenderingStudy& study) {
     if (point.setting.knob == Knob::precision && !point.setting.reference) {
       const RenderingErrors& errors = point.errors;
       return fmt::format(
-          "Floats: {} of {} pixels differ, half of them by less than {:.1e} of the image's level; {} "
+          "Floats: {} of {} pixels differ, half of these by at most {:.1e} of the image's level; {} "
           "visibly.\n",
           errors.plain.changed, std::uint64_t{point.setting.render.width} * point.setting.render.height,
           errors.median_change, errors.plain.visible);
@@ -87,9 +87,9 @@ tables::StudyOutput output_of(const RenderingStudy& study) {
   part.host_tables = {rendering_time_table(study), rendering_fastest_table(study)};
 
   const processors::program::RenderOptions& base = study.plan.base;
-  part.report = fmt::format("Error of the renderer on {}, {} x {}, {} a pixel, at most {} rays in a row\n\n",
+  part.report = fmt::format("Error of the renderer on {}, {} x {}, {} a pixel, at most {} in a row\n\n",
                             study.scene, base.width, base.height, tables::counted(base.samples, "sample"),
-                            base.max_depth);
+                            tables::counted(base.max_depth, "ray"));
   part.report += error_lines(study) + "\n";
   for (const std::string& note : study.plan.notes) {
     part.report += "Note: " + note + ".\n";
@@ -98,7 +98,8 @@ tables::StudyOutput output_of(const RenderingStudy& study) {
   part.report += fmt::format("Samples: against {} samples, whose own noise has a root mean square of {:.2e}",
                              study.reference_samples, study.noise_floor);
   if (const std::optional<double> exponent = sample_exponent(study)) {
-    part.report += fmt::format("; the error falls as samples^{:.2f}", *exponent);
+    part.report += *exponent <= -0.005 ? fmt::format("; the error falls as samples^{:.2f}", *exponent)
+                                       : "; more samples than these do not make the error smaller";
   }
   part.report += ".\n\n" + tables::text_of(part.tables[1]);
   part.host_report = time_lines(study, part.host_tables[0]) + "\n" + tables::text_of(part.host_tables[1]);

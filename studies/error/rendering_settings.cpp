@@ -36,10 +36,7 @@ class Planner {
         add(Knob::depth, fmt::format("{} rays", options_.reference_depth), options_.reference_depth);
     deepest.render.max_depth = options_.reference_depth;
     deepest.reference = true;
-    add_weight(0.0, true);
-    for (const double weight : options_.weights) {
-      add_weight(weight, false);
-    }
+    add_weights();
     RenderingSetting& floats = add(Knob::precision, "float", 24.0);
     floats.render.floats = true;
     add(Knob::precision, "double", 53.0).reference = true;
@@ -57,6 +54,17 @@ class Planner {
     setting.value = value;
     setting.render = plan_.base;
     return setting;
+  }
+
+  void add_weights() {
+    if (plan_.base.integrator == processors::program::Integrator::path) {
+      plan_.notes.emplace_back("no weights: to cut rays off would darken a path-traced image");
+      return;
+    }
+    add_weight(0.0, true);
+    for (const double weight : options_.weights) {
+      add_weight(weight, false);
+    }
   }
 
   void add_weight(double weight, bool reference) {

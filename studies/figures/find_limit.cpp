@@ -34,6 +34,10 @@ std::string interconnect_name(const processors::machine::MachineConfig& machine)
   return "bus";
 }
 
+std::string bank_name(const processors::machine::MachineConfig& machine) {
+  return machine.banks.dram ? "channel" : "bank";
+}
+
 Limit find_limit(const processors::machine::MachineConfig& machine,
                  const processors::replay::MachineResult& result) {
   if (result.end == 0) {

@@ -12,6 +12,9 @@ namespace marti::studies::figures {
 /// database "mesh network" and the like.
 [[nodiscard]] std::string interconnect_name(const processors::machine::MachineConfig& machine);
 
+/// What serves the memory's accesses one after another: "bank", or with DRAM "channel".
+[[nodiscard]] std::string bank_name(const processors::machine::MachineConfig& machine);
+
 enum class Limit {
   nothing,
   interconnect,

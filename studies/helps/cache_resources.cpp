@@ -61,7 +61,7 @@ void add_first_level(const Changer& changer, const processors::machine::NodeCach
   resources.push_back({"cache.line", Part::caches, changer.with({{"cache.line", 2 * line}}), std::nullopt});
   if (line > 1) {
     resources.push_back(
-        {"cache.line, shorter", Part::caches, changer.with({{"cache.line", line / 2}}), std::nullopt});
+        {"cache.line (shorter)", Part::caches, changer.with({{"cache.line", line / 2}}), std::nullopt});
   }
 }
 

@@ -179,7 +179,8 @@ std::string why(const Help& help, const MachineConfig& machine, const MachineRes
       return fmt::format("nodes spend {:.1f} % of their time on transfers",
                          percent(counts, Activity::transfer));
     case Part::banks:
-      return fmt::format("the busiest bank is {:.1f} % busy", 100.0 * figure(counts, "bank_utilisation"));
+      return fmt::format("the busiest {} is {:.1f} % busy", figures::bank_name(machine),
+                         100.0 * figure(counts, "bank_utilisation"));
     case Part::network:
       return why_network(machine, counts);
     case Part::messages:

@@ -70,16 +70,6 @@ std::vector<T> ascending(const sim::Config& config, std::string_view key) {
   return names;
 }
 
-/// Says which command reads the sections that this schema does not declare: a file is often given to the
-/// wrong one.
-inline void declare_sections_of_other_commands(sim::Schema& schema) {
-  for (const std::string_view study : {"paper", "schemes", "error", "stability"}) {
-    schema.elsewhere(study, "marti study " + std::string(study));
-  }
-  schema.elsewhere("sweep", "marti sweep");
-  schema.elsewhere("prices", "marti sweep");
-}
-
 /// The choices of a key, from the names of an enumeration.
 template <std::size_t N>
 std::vector<std::string> names(const std::array<std::string_view, N>& list) {

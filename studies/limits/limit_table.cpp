@@ -49,17 +49,18 @@ LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optiona
   table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {
     const std::optional<PointLimit> limit = limits.at(std::get<std::int64_t>(row[ordinal]));
     const PredictedStep* const best = limit ? limit->best() : nullptr;
-    if (limit) {
-      ++count[best != nullptr ? best->name : "nothing known"];
-    }
-    if (best == nullptr) {
+    if (!limit) {
       return std::vector<tables::Cell>(columns.size());
     }
+    ++count[best != nullptr ? best->name : "nothing known"];
     std::string others;
     for (const PredictedStep* const step : limit->open()) {
       others += (others.empty() ? "" : ", ") + step->name;
     }
     open += others.empty() ? 0U : 1U;
+    if (best == nullptr) {
+      return {{}, {}, {}, others};
+    }
     return {best->name, best->saved, best->rests_on, others};
   });
   return {std::move(table), limits_line(count, open)};

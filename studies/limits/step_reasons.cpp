@@ -40,7 +40,8 @@ std::string reason_of(helps::Part part, const processors::machine::MachineConfig
                        100.0 * busy_share(part, figures));
   }
   if (part == helps::Part::banks) {
-    return fmt::format("{}: the busiest bank is {:.1f} % busy", basis, 100.0 * busy_share(part, figures));
+    return fmt::format("{}: the busiest {} is {:.1f} % busy", basis, figures::bank_name(machine),
+                       100.0 * busy_share(part, figures));
   }
   if (part == helps::Part::interconnect) {
     return text(figures.transfer, "transfers take the nodes");

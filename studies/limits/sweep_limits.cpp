@@ -59,11 +59,18 @@ std::string PointLimit::sentence() const {
                                        100.0 * first->saved, first->rests_on)
                          : fmt::format("no step that can be predicted makes the frame {:.1f} % shorter",
                                        100.0 * helps::worth_naming);
-  std::string unknown;
-  for (const PredictedStep* const step : open()) {
-    unknown += (unknown.empty() ? "; not known: " : "; ") + helps::describe(step->keys);
+  if (std::ranges::all_of(steps, [](const auto& step) { return step.basis == LimitBasis::unknown; })) {
+    text = "no step can be predicted";
   }
-  return text + unknown;
+  constexpr std::size_t most_named = 4;
+  const std::vector<const PredictedStep*> unknown = open();
+  for (std::size_t i = 0; i < std::min(unknown.size(), most_named); ++i) {
+    text += (i == 0 ? "; not known: " : "; ") + helps::describe(unknown[i]->keys);
+  }
+  if (unknown.size() > most_named) {
+    text += fmt::format(" and {} more", unknown.size() - most_named);
+  }
+  return text;
 }
 
 SweepLimits::SweepLimits(std::vector<std::string> axes, std::vector<LimitPoint> points,

@@ -9,6 +9,7 @@
 
 #include "processors/cost/operation_mix.h"
 #include "sim/error.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::paper {
 
@@ -55,10 +56,11 @@ std::string level_text(const std::optional<std::uint32_t>& level) {
 tables::Claim deep_nodes(std::span<const SceneTrees> scenes) {
   tables::Claim claim{"nodes of the teapot's octree", "42 % lie in levels 8 to 12", "",
                       tables::Verdict::not_measured};
-  if (const SceneTrees* scene = find(scenes, pot)) {
+  if (const SceneTrees* scene = find(scenes, pot); scene != nullptr && scene->octree.levels.size() >= 8) {
     const std::vector<LevelCount>& levels = scene->octree.levels;
     const double share = deep_share(levels.size(), 8, [&](std::size_t l) { return levels[l - 1].nodes(); });
-    claim.here = fmt::format("{:.2f} %; 9 objects a leaf were fitted to the 42 %", 100.0 * share);
+    claim.here =
+        fmt::format("{:.2f} %; 9 objects a leaf, the default, were fitted to the 42 %", 100.0 * share);
     claim.verdict = tables::verdict_of(std::abs(share - 0.42) <= 0.005);
   }
   return claim;
@@ -70,7 +72,8 @@ tables::Claim first_level(std::span<const SceneTrees> scenes, std::string_view n
       fmt::format("leaves against other nodes, {}", name == pot ? "teapot" : "19,000 polygons"),
       fmt::format("more than {:g} times as many first on level {}", k, published), "",
       tables::Verdict::not_measured};
-  if (const SceneTrees* scene = find(scenes, name)) {
+  if (const SceneTrees* scene = find(scenes, name);
+      scene != nullptr && scene->octree.levels.size() >= published) {
     const std::optional<std::uint32_t> level = rule_level(scene->octree.levels, k);
     claim.here = level_text(level);
     claim.verdict = tables::verdict_of(level == published);
@@ -126,7 +129,7 @@ std::uint64_t accesses(const TracedRun& run, std::size_t level) {
 tables::Claim deep_accesses(const TracedRun* run) {
   tables::Claim claim{"accesses to deep levels, teapot", "less than 1 % go to levels 8 to 12", "",
                       tables::Verdict::not_measured};
-  if (run != nullptr) {
+  if (run != nullptr && run->visits.per_level.size() >= 8) {
     const std::size_t levels = run->visits.per_level.size();
     const auto of_level = [&](std::size_t level) { return accesses(*run, level); };
     const double share = deep_share(levels, 8, of_level);
@@ -258,7 +261,7 @@ tables::Claim saving(std::span<const RunOutcomes> runs, std::string_view what, d
     claim.here += (claim.here.empty() ? "" : "; ") + name_of(run.run) + ": ";
     if (rule != nullptr) {
       const double share = saved(value(*rule), value(run.whole()));
-      claim.here += fmt::format("{:.1f} % with k = 10, ", 100.0 * share);
+      claim.here += tables::rough_percent(share) + " with k = 10, ";
       by_rule = run.run.scene == large ? std::max(by_rule, share) : by_rule;
     }
     claim.here += fmt::format("at most {:.1f} %", 100.0 * most);

@@ -66,11 +66,11 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
   const accel::OctreeOptions& octree = paper.frame.structure_options.octree;
   return fmt::format(
       "Space subdivision as the paper of 1992 studied it\n"
-      "trees    at most {} primitives in a leaf, {} levels\n"
+      "trees    at most {} in a leaf, {}\n"
       "images   {} x {}\n"
       "machine  {} at {}, operations as \"{}\"\n",
-      octree.max_objects, octree.max_level, paper.frame.render.width, paper.frame.render.height,
-      tables::counted(paper.machine.all_nodes(), "node"),
+      tables::counted(octree.max_objects, "primitive"), tables::counted(octree.max_level, "level"),
+      paper.frame.render.width, paper.frame.render.height, tables::counted(paper.machine.all_nodes(), "node"),
       sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
 }
 

@@ -14,6 +14,7 @@
 #include "sim/config_errors.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_keys.h"
+#include "studies/keys/other_commands.h"
 #include "studies/keys/record_keys.h"
 #include "studies/run/plan/machine_plan.h"
 #include "studies/run/record/observers.h"
@@ -125,7 +126,8 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::program::WorkLog& log = *result.functional.frame.log;
-  std::vector<PlanEntry> entries = machine_plan(kept, result.machine, log, options.observer != nullptr);
+  std::vector<PlanEntry> entries =
+      machine_plan(kept, result.machine, log, result.functional.totals, options.observer != nullptr);
   processors::replay::MachineResult timed = processors::replay::replay(log, result.machine, options);
   count_machine_plan(timed, entries);
   add_entries(result.plan, std::move(entries));

@@ -71,10 +71,15 @@ tables::Claim cached(std::span<const ScalingPoint> points) {
       "packets with private caches", "a much larger number of processors can share the memory", "", {}};
   claim.verdict = tables::Verdict::not_measured;
   const std::vector<ScalingPoint> without = find(Kind::naive, points);
-  const std::vector<ScalingPoint> with = find(Kind::cached, points);
+  std::vector<ScalingPoint> with = find(Kind::cached, points);
   if (!without.empty() && !with.empty()) {
+    // Nodes that get fewer packets than others wait for these, not for the memory.
+    std::erase_if(with, [](const auto& point) { return point.limit == figures::Limit::imbalance; });
     const std::optional<double> few = half_efficiency_nodes(without);
     const std::optional<double> many = half_efficiency_nodes(with);
+    if (with.empty()) {
+      return claim;
+    }
     claim.here = fmt::format("half the efficiency is left at {} nodes, without caches at {}",
                              nodes_text(many, with), nodes_text(few, without));
     // Where the measured machines have too few nodes to tell, nothing is said.
@@ -96,8 +101,7 @@ tables::Claim space(std::span<const ScalingPoint> points) {
                              fmt::format("{:.2f}", efficiency(point)), point.nodes);
     }
     const std::optional<double> half = half_efficiency_nodes(machine);
-    claim.here =
-        fmt::format("efficiency {} nodes; half of it is left at {}", figures, nodes_text(half, machine));
+    claim.here = fmt::format("efficiency {} nodes; one half at {}", figures, nodes_text(half, machine));
     if (half || machine.back().nodes >= most_nodes) {
       claim.verdict = tables::verdict_of(half && *half <= most_nodes);
     }
@@ -126,18 +130,23 @@ tables::Claim pipeline(std::span<const StagePoint> stages) {
 tables::Claim cells(std::span<const CellPoint> points) {
   tables::Claim claim{"size of the cells", "too small and too large cells both hurt the cache", "",
                       tables::Verdict::not_measured};
-  if (points.size() >= fewest_points) {
-    const auto fewest = std::ranges::min_element(points, [](const auto& a, const auto& b) {
-      return a.tree.references.all_misses() < b.tree.references.all_misses();
-    });
-    const auto times = [&](const CellPoint& point) {
-      return static_cast<double>(point.tree.references.all_misses()) /
-             static_cast<double>(std::max<std::int64_t>(1, fewest->tree.references.all_misses()));
-    };
-    claim.here = fmt::format("fewest misses with level {}; {} times as many with {}, {} with {}",
-                             fewest->level, tables::times(times(points.front())), points.front().level,
-                             tables::times(times(points.back())), points.back().level);
-    claim.verdict = tables::verdict_of(times(points.front()) > 1.05 && times(points.back()) > 1.05);
+  const auto misses = [](const CellPoint& point) { return point.tree.references.all_misses(); };
+  const auto by_misses = std::ranges::minmax_element(points, {}, misses);
+  // Trees that are alike, and a machine without a cache, say nothing.
+  if (points.size() >= fewest_points && misses(*by_misses.min) < misses(*by_misses.max) &&
+      points.front().tree.references.all_hits() > 0) {
+    const CellPoint& fewest = *by_misses.min;
+    claim.here = fmt::format("fewest misses with level {}", fewest.level);
+    bool both_hurt = true;
+    for (const CellPoint* const end : {&points.front(), &points.back()}) {
+      const double times =
+          static_cast<double>(misses(*end)) / static_cast<double>(std::max<std::int64_t>(1, misses(fewest)));
+      both_hurt = both_hurt && times > 1.05;
+      claim.here += end == &fewest
+                        ? ", the last tried on that side"
+                        : fmt::format("; {} times as many with {}", tables::times(times), end->level);
+    }
+    claim.verdict = tables::verdict_of(both_hurt);
   }
   return claim;
 }
@@ -145,15 +154,17 @@ tables::Claim cells(std::span<const CellPoint> points) {
 }  // namespace
 
 std::optional<double> half_efficiency_nodes(std::span<const ScalingPoint> machine) {
-  const double half = 0.5 * efficiency(machine.front());
-  for (std::size_t i = 1; i < machine.size(); ++i) {
-    const double before = efficiency(machine[i - 1]);
-    const double after = efficiency(machine[i]);
+  constexpr double half = 0.5;
+  double before = 1.0;  // of one node, be it timed or not
+  double from = 0.0;    // log2(1)
+  for (const ScalingPoint& point : machine) {
+    const double after = efficiency(point);
+    const double to = std::log2(point.nodes);
     if (after < half) {
-      const double from = std::log2(machine[i - 1].nodes);
-      const double to = std::log2(machine[i].nodes);
       return std::exp2(from + (to - from) * (before - half) / (before - after));
     }
+    before = after;
+    from = to;
   }
   return std::nullopt;
 }

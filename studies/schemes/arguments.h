@@ -13,8 +13,9 @@
 
 namespace marti::studies::schemes {
 
-/// The largest number of nodes with at least half the efficiency that the machine has with its fewest nodes,
-/// between the measured ones by a straight line in log(nodes); std::nullopt when it never falls so far.
+/// The largest number of nodes with an efficiency of at least one half, between the measured ones by a
+/// straight line in log(nodes), which begins at one node's efficiency of 1; std::nullopt when it never falls
+/// so far.
 [[nodiscard]] std::optional<double> half_efficiency_nodes(std::span<const ScalingPoint> machine);
 
 /// Statements whose machines were not timed have the verdict not_measured.

@@ -12,6 +12,7 @@
 #include "sim/units.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_keys.h"
+#include "studies/keys/other_commands.h"
 #include "studies/run/run_result.h"
 
 namespace marti::studies::schemes {

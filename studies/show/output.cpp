@@ -12,6 +12,7 @@
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/pending_files.h"
+#include "studies/tables/result_directory.h"
 #include "studies/tables/run_files.h"
 
 namespace marti::studies::show {
@@ -66,7 +67,7 @@ WrittenRun write_output(const run::RunResult& result, const std::filesystem::pat
     hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
   }
   WrittenRun written{{}, json_of(result, hashes)};
-  files.write("result.json", written.json);
+  files.write(tables::run_name, written.json);
   if (result.timeline) {
     result.timeline->commit();
   }

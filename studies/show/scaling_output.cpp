@@ -94,10 +94,11 @@ std::string bound_lines(const run::RunResult& r) {
     return text;
   }
   const processors::replay::Prediction& p = *r.prediction;
-  text += fmt::format("predicted     {} by {}mean value analysis ({:+.1f} %), {} to {} by balanced jobs\n",
+  const double off = 100.0 * (p.mean_value / ticks(r.timed.end) - 1.0);
+  text += fmt::format("predicted     {} by {}mean value analysis ({}{} %), {} to {} by balanced jobs\n",
                       tables::computed_seconds(p.mean_value), p.exact ? "" : "approximate ",
-                      100.0 * (p.mean_value / ticks(r.timed.end) - 1.0),
-                      tables::computed_seconds(p.balanced_low), tables::computed_seconds(p.balanced_high));
+                      off >= 0.05 ? "+" : "", tables::fixed(off, 1), tables::computed_seconds(p.balanced_low),
+                      tables::computed_seconds(p.balanced_high));
   if (const std::optional<double> saturation = p.network.saturation()) {
     text +=
         fmt::format("  saturation  from {:.1f} nodes{}: {} between reads, {} a read in the busiest queue\n",

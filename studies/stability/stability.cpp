@@ -10,6 +10,7 @@
 #include "studies/stability/stability_keys.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::stability {
 
@@ -65,8 +66,8 @@ tables::StudyOutput run_stability(sim::Config& config, std::span<const Stability
   }
   const tables::Table precision = precision_table(compare_precisions(size.rays / 4));
   output.report = tables::text_of(table) + "\n" + tables::text_of(precision) + "\n" +
-                  fmt::format("{} cases, {} passed, {} failed{}\n", cases.size(), cases.size() - failures,
-                              failures, failed.empty() ? "" : ": " + failed);
+                  fmt::format("{}, {} passed, {} failed{}\n", tables::counted(cases.size(), "case"),
+                              cases.size() - failures, failures, failed.empty() ? "" : ": " + failed);
   output.tables = {std::move(table), precision, tables::provenance_table(config.effective_values())};
   output.host_tables = {std::move(times), tables::host_table()};
   if (failures > 0) {

@@ -6,6 +6,7 @@
 #include "sim/nearest.h"
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
+#include "studies/keys/other_commands.h"
 
 namespace marti::studies::stability {
 

@@ -82,6 +82,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
                       const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
+  tables::refuse_other_results(options.directory, tables::database_name);
   const sim::MadeDirectory made = show::prepare_output(options.directory);
   SweepReport report;
   report.store = options.directory / tables::database_name;

@@ -19,8 +19,19 @@ bool is_there(const fs::path& file) {
   return true;
 }
 
+void refuse_other_results(const fs::path& directory, std::string_view own) {
+  for (const char* const other : {run_name, database_name}) {
+    if (!directory.empty() && other != own && is_there(directory / other)) {
+      throw sim::UserError(
+          (directory / other).string() +
+          ": is there already, and a directory holds a run or a sweep or a study, not two of "
+          "them; give another directory");
+    }
+  }
+}
+
 fs::path results_in(const fs::path& directory, std::string_view expected) {
-  const fs::path run = directory / "result.json";
+  const fs::path run = directory / run_name;
   const fs::path database = directory / database_name;
   const bool is_run = is_there(run);
   if (is_run && is_there(database)) {

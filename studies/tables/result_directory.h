@@ -10,11 +10,17 @@
 
 namespace marti::studies::tables {
 
+/// The file of a run in its directory.
+inline constexpr const char* run_name = "result.json";
 /// The file of a sweep or study in its directory.
 inline constexpr const char* database_name = "results.sqlite";
 
 /// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
+
+/// UserError when the directory holds the other of the two than `own`: nobody could tell later which of them
+/// is meant. An empty name holds nothing.
+void refuse_other_results(const std::filesystem::path& directory, std::string_view own);
 
 /// The one of the two that the directory holds. UserError when it holds both, or neither: `expected` says
 /// what it should be then.

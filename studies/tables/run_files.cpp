@@ -4,6 +4,7 @@
 
 #include "sim/error.h"
 #include "sim/sha256.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies::tables {
 
@@ -30,7 +31,7 @@ std::map<std::string, std::string> files_of(const RunJson& run) {
 
 std::map<std::string, std::string> files_of_run_in(const fs::path& directory) {
   try {
-    const RunJson run = read_run_json(directory / "result.json");
+    const RunJson run = read_run_json(directory / run_name);
     std::map<std::string, std::string> files = files_of(run);
     if (!run.json().contains("files")) {
       for (const std::string_view name : run_file_names()) {

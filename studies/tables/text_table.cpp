@@ -48,10 +48,7 @@ std::string visible(const std::string& text) {
   return out;
 }
 
-std::string real(double value, const Shown& how) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value * how.factor, how.decimals)
-                              : fmt::format("{}", value);
-}
+std::string real(double value, const Shown& how) { return fixed(value * how.factor, how.decimals); }
 
 std::string text_of(const Cell& cell, const Shown& how) {
   if (const auto* integer = std::get_if<std::int64_t>(&cell)) {

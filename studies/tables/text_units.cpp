@@ -46,9 +46,15 @@ std::string signed_seconds(sim::Ticks ticks) {
   return (ticks < 0 ? "-" : "+") + seconds(ticks < 0 ? -ticks : ticks);
 }
 
-std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+std::string fixed(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  const bool minus_zero = text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos;
+  return minus_zero ? text.substr(1) : text;
+}
 
-std::string rough_percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+std::string percent(double share) { return fixed(100.0 * share, 2) + " %"; }
+
+std::string rough_percent(double share) { return fixed(100.0 * share, 1) + " %"; }
 
 std::string signed_percent(double share) {
   const double percents = 100.0 * share;

@@ -20,6 +20,9 @@ namespace marti::studies::tables {
 /// A change of a time: "+1.234 ms", "-1.234 us"; "0 s".
 [[nodiscard]] std::string signed_seconds(sim::Ticks ticks);
 
+/// A number with so many decimals; what is rounded to 0 has no sign.
+[[nodiscard]] std::string fixed(double value, int decimals);
+
 /// A share in a table, with two decimals: "24.90 %".
 [[nodiscard]] std::string percent(double share);
 

@@ -180,6 +180,12 @@ TEST_F(ReportCommand, NamesTheBestMachineWithinABudget) {
   for (const char* bad : {"-1", "nan", "inf"}) {
     EXPECT_EQ(marti("report " + sweep + page + " --budget=" + bad).status, 2) << bad;
   }
+  const fs::path alike = made("alike", "sweep " + quoted(fs::path(MARTI_SOURCE) / "configs" / "marti.toml") +
+                                           " --quiet --set image.width=8 --set image.height=8 --set "
+                                           "scene.source=tetra:1 --axis cache.line=16B,32B");
+  const Outcome unpriced = marti("report " + quoted(alike) + page + " --budget 1000");
+  EXPECT_EQ(unpriced.status, 2);
+  EXPECT_NE(unpriced.output.find("have the same cost by [prices]"), std::string::npos) << unpriced.output;
   const Outcome run = marti("report " + sweep + ":1" + page + " --budget 9");
   EXPECT_EQ(run.status, 2);
   EXPECT_TRUE(says(run, "--budget: chooses among the machines of a sweep"));
@@ -218,6 +224,13 @@ TEST_F(ReportCommand, AStudysPageBeginsWithItsVerdict) {
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
   EXPECT_TRUE(says("1 of 2 cases pass; the others:"));
   EXPECT_TRUE(says("leaks-at-1e6: 3 leaks (FAIL)."));
+  // What was not measured is no claim that failed.
+  const std::string unmeasured =
+      change.substr(0, change.find("('FAIL'")) + "('not measured', None)); c.commit()";
+  ASSERT_EQ(shell("python3 -c \"" + unmeasured + "\" " + quoted(cases / "results.sqlite")).status, 0);
+  ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
+  EXPECT_TRUE(says("1 of 1 cases pass."));
+  EXPECT_TRUE(says("Not measured here: leaks-at-1e6."));
 }
 
 TEST_F(ReportCommand, GivesTheSameBytesTwice) {

@@ -38,6 +38,13 @@ TEST(Study, ReplacesNoSweep) {
   ASSERT_EQ(marti(sweep).status, 0);
   expect_refused("study operations " + quoted(config) + out, "results.sqlite: is the store of a sweep");
   EXPECT_TRUE(says(marti(sweep), "2 done")) << "the sweep's points stay";
+  // Of a run and a sweep in one directory nobody could tell later which one is meant.
+  expect_refused("run " + quoted(config) + out, "results.sqlite: is there already");
+  const std::string run = " -o " + quoted(directory.path() / "run");
+  ASSERT_EQ(marti("run " + quoted(config) + run).status, 0);
+  expect_refused("study operations " + quoted(config) + run, "result.json: is there already");
+  expect_refused("sweep " + quoted(config) + " --axis machine.nodes=1,2" + run,
+                 "result.json: is there already");
 }
 
 TEST(Study, WrongInputIsTwoAndOlderResultsStay) {

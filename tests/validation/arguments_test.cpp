@@ -137,6 +137,46 @@ TEST(Arguments, HalfTheEfficiencyIsFoundBetweenPoints) {
   EXPECT_NEAR(half_efficiency_nodes(machine).value(), 6.35, 0.01);  // 2^(2 + 2 * 1/3)
   machine[2].efficiency = 0.5;
   EXPECT_EQ(half_efficiency_nodes(machine), std::nullopt);
+  // One node's efficiency is 1, whether it was timed or not.
+  machine[0].nodes = 16;
+  machine[0].efficiency = 0.25;
+  EXPECT_NEAR(half_efficiency_nodes(machine).value(), 6.35, 0.01);  // 2^(4 * 2/3)
+}
+
+// With more nodes than packets the efficiency falls too, but the memory is not to blame.
+TEST(Arguments, NodesWithoutPacketsSayNothingOfTheMemory) {
+  std::vector<ScalingPoint> machines(6);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    machines[i].machine = "naive";
+    machines[i].nodes = machines[i + 3].nodes = 1U << (2U * i);
+    machines[i].efficiency = 1.0 / machines[i].nodes;
+    machines[i].interconnect = machines[i + 3].interconnect = 0.95;
+    machines[i + 3].machine = "cached";
+    machines[i + 3].hit_ratio = 0.9;
+    machines[i + 3].efficiency = 1.0 - 0.4 * i;
+  }
+  const auto verdict = [&] { return check_arguments(machines, {}, {})[1].verdict; };
+  EXPECT_EQ(verdict(), Verdict::agrees) << "half is left at 10 nodes and at 2";
+  machines[5].limit = figures::Limit::imbalance;
+  EXPECT_EQ(verdict(), Verdict::not_measured);
+}
+
+TEST(Arguments, CellsThatDoNotDifferAreNotJudged) {
+  std::vector<CellPoint> cells(3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    cells[i].level = i + 1;
+    cells[i].tree.references.hits[0] = 1000;
+    cells[i].tree.references.misses[0] = 50;
+  }
+  const auto claim = [&] { return check_arguments({}, cells, {}).back(); };
+  EXPECT_EQ(claim().verdict, Verdict::not_measured) << "the trees are alike";
+  cells[1].tree.references.misses[0] = 60;
+  cells[2].tree.references.misses[0] = 100;
+  EXPECT_EQ(claim().verdict, Verdict::differs);
+  EXPECT_EQ(claim().here,
+            "fewest misses with level 1, the last tried on that side; 2.00 times as many with 3");
+  cells[0].tree.references.hits[0] = 0;
+  EXPECT_EQ(claim().verdict, Verdict::not_measured) << "no cache";
 }
 
 }  // namespace

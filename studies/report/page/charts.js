@@ -105,7 +105,6 @@ marti.charts = (() => {
         document.getElementById(`chart-${name}`).textContent = `This chart could not be drawn: ${error.message}`;
         console.error(name, error);
       }
-      if (!("firstChart" in marti)) marti.firstChart = performance.now();
       await new Promise((resolve) => setTimeout(resolve, 0));
     }
   }

@@ -1,5 +1,5 @@
 // Begins when all other scripts are there.
 "use strict";
-marti.ready = marti.charts.redraw().then(() => {
+marti.charts.redraw().then(() => {
   document.documentElement.dataset.drawn = "yes";
 });

@@ -61,7 +61,13 @@ ReportData read_report(const fs::path& directory, std::optional<double> budget) 
     refuse_budget();
     return read_study_report(directory);
   }
-  return sweep_report(read_report_points(file), budget);
+  const ReportPoints sweep = read_report_points(file);
+  if (budget && !sweep.priced) {
+    throw sim::UserError(
+        "--budget: all machines of " + directory.string() +
+        " have the same cost by [prices], so that a budget cannot choose among them; leave it out");
+  }
+  return sweep_report(sweep, budget);
 }
 
 }  // namespace marti::studies::report

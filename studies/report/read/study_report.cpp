@@ -155,24 +155,28 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
     return found == nullptr ? std::string("?") : *found;
   };
   std::size_t holding = 0;
-  std::size_t not_measured = 0;
+  std::string not_measured;
   std::vector<std::string> others;
   for (std::size_t row = 0; row < table.rows().size(); ++row) {
     const std::string verdict = text(row, "verdict");
+    const std::string subject = text(row, claims ? "subject" : "case");
     if (verdict == "agrees" || verdict == "pass") {
       ++holding;
+    } else if (verdict == "not measured") {
+      not_measured += (not_measured.empty() ? "" : "; ") + subject;
     } else {
-      not_measured += verdict == "not measured" ? 1 : 0;
-      others.push_back(claims ? fmt::format("{}: {} ({}).", text(row, "subject"), text(row, "here"), verdict)
-                              : fmt::format("{}: {} ({}).", text(row, "case"), text(row, "figure"), verdict));
+      others.push_back(fmt::format("{}: {} ({}).", subject, text(row, claims ? "here" : "figure"), verdict));
     }
   }
-  const std::string unmeasured =
-      not_measured == 0 ? "" : fmt::format(", {} more are not measured here", not_measured);
-  report.answer.push_back(fmt::format("{} of {} {}{}{}", holding, table.rows().size() - not_measured,
-                                      claims ? "claims of the paper are reproduced" : "cases pass",
-                                      unmeasured, others.empty() ? "." : "; the others:"));
+  if (const std::size_t measured = holding + others.size(); measured > 0) {
+    report.answer.push_back(fmt::format("{} of {} {}{}", holding, measured,
+                                        claims ? "claims of the paper are reproduced" : "cases pass",
+                                        others.empty() ? "." : "; the others:"));
+  }
   report.answer.insert(report.answer.end(), others.begin(), others.end());
+  if (!not_measured.empty()) {
+    report.answer.push_back("Not measured here: " + not_measured + ".");
+  }
 }
 
 bool has_columns(const tables::Table& table, std::span<const std::string_view> names) {

@@ -41,8 +41,9 @@ void keep(const KeptItems& kept, processors::replay::ReplayOptions& options) {
 }
 
 std::vector<PlanEntry> machine_plan(const KeptItems& kept, const processors::machine::MachineConfig& machine,
-                                    const processors::program::WorkLog& log, bool observed) {
-  const std::int64_t records = records_of(processors::program::totals_of(log));
+                                    const processors::program::WorkLog& log,
+                                    const processors::program::LogTotals& totals, bool observed) {
+  const std::int64_t records = records_of(totals);
 
   const char* waits = processors::walk::why_read_events(machine);
   if (waits == nullptr && observed) {

@@ -220,6 +220,8 @@ TEST(SweepLimits, OfAPipelineOnlyNeighboursSpeak) {
   EXPECT_EQ(find(limit, "node.clock")->basis, LimitBasis::interpolated);
   EXPECT_FALSE(limit.open().empty());
   EXPECT_NE(limit.sentence().find("; not known: "), std::string::npos);
+  EXPECT_NE(limit.sentence().find(" and " + std::to_string(limit.open().size() - 4) + " more"),
+            std::string::npos);
 }
 
 // Whatever the machine, alone or beside another: no gain is invented, and all are possible.

@@ -176,6 +176,19 @@ TEST(Claims, SayWhatWasNotMeasured) {
   }
 }
 
+// A tree that structure.max_level cuts off has none of the levels that the paper speaks of.
+TEST(Claims, SayNothingOfLevelsThatTheTreeHasNot) {
+  studies::paper::SceneTrees scene;
+  scene.scene = "teapot:12:pot";
+  scene.octree.levels = {{0, 1}, {8, 0}};
+  scene.bsp.levels = scene.octree.levels;
+  for (const studies::tables::Claim& claim : studies::paper::check_tree_claims(std::span(&scene, 1))) {
+    if (claim.paper.find("level") != std::string::npos) {
+      EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject << claim.paper;
+    }
+  }
+}
+
 TEST(Paper, WrongConfigurationsAreRefused) {
   const std::vector<test::WrongConfiguration> cases = {
       {"[scene]\nsource = \"tetra:2\"\n", {"paper.toml:2", "scene.source", "paper.run_scenes"}},

@@ -37,6 +37,8 @@ TEST(TextUnits, ComputedTimesKeepWithin64Bits) {
 TEST(TextUnits, SharesAndChangesArePercentages) {
   EXPECT_EQ(percent(0.249), "24.90 %");
   EXPECT_EQ(rough_percent(0.0993), "9.9 %");
+  EXPECT_EQ(rough_percent(-0.0003), "0.0 %");
+  EXPECT_EQ(rough_percent(-0.0007), "-0.1 %");
   EXPECT_EQ(change_percent(0.6902), "+69.02 %");
   EXPECT_EQ(change_percent(-1.0), "-100.00 %");
   EXPECT_EQ(change_percent(0.0), "+0.00 %");
