@@ -18,7 +18,6 @@
 #include <utility>
 
 #include "sim/error.h"
-#include "sim/input_files.h"
 
 namespace marti::sim {
 
@@ -130,7 +129,6 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   if (!target_.has_filename() || fs::is_directory(target_, ignored)) {
     fail(target_, EISDIR);
   }
-  refuse_input(target_);
   const std::lock_guard guard(pending().mutex);
   if (pending().locks < most_locks) {
     remove_leftovers(target_);

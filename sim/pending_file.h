@@ -23,8 +23,7 @@ enum class Durability {
 /// PendingFile of the same target removes them.
 class PendingFile {
  public:
-  /// UserError when the file cannot be made, or the target is a file that was read as input
-  /// (sim/input_files.h).
+  /// UserError when the file cannot be made.
   explicit PendingFile(std::filesystem::path target);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;

@@ -23,6 +23,7 @@
 #include "scenes/tessellate.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/input_files.h"
 #include "sim/made_directory.h"
 #include "sim/memory_budget.h"
 #include "sim/shown.h"
@@ -468,6 +469,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
       throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
     }
     scenes::Scene source = open(arguments);
+    sim::refuse_input(arguments.target);
     scenes::tessellate(source);
     scenes::export_glb(source, arguments.target, host::encode_png);
     std::string text = "wrote " + arguments.target + "\n";

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sim/input_files.h"
 #include "sim/sha256.h"
 
 namespace marti::studies::tables {
@@ -10,6 +11,7 @@ PendingFiles::PendingFiles(std::filesystem::path directory) : directory_(std::mo
 
 const std::filesystem::path& PendingFiles::add(const std::string& name) {
   names_.push_back(directory_ / name);
+  sim::refuse_input(names_.back());
   return pending_.emplace_back(names_.back()).temporary();
 }
 

@@ -326,7 +326,7 @@ TEST(SweepPlan, ASceneFileIsWhatIsInIt) {
   };
   const std::string first = frame_of("one", "teapot:2");
   EXPECT_EQ(frame_of("two", "teapot:2"), first);
-  EXPECT_NE(frame_of("three", "teapot:3"), first);
+  EXPECT_NE(frame_of("one", "teapot:3"), first);
 }
 
 TEST(SweepPlan, BaseAndComparisonAreOnesOwn) {
