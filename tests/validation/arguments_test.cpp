@@ -157,7 +157,7 @@ TEST(Arguments, NodesWithoutPacketsSayNothingOfTheMemory) {
   }
   const auto verdict = [&] { return check_arguments(machines, {}, {})[1].verdict; };
   EXPECT_EQ(verdict(), Verdict::agrees) << "half is left at 10 nodes and at 2";
-  machines[5].limit = figures::Limit::imbalance;
+  machines[5].limit = studies::figures::Limit::imbalance;
   EXPECT_EQ(verdict(), Verdict::not_measured);
 }
 
