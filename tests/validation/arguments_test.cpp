@@ -1,6 +1,7 @@
 // The paper's arguments about parallel machines, of which only directions are tested, on a small image.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -149,11 +150,11 @@ TEST(Arguments, NodesWithoutPacketsSayNothingOfTheMemory) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     machines[i].machine = "naive";
     machines[i].nodes = machines[i + 3].nodes = 1U << (2U * i);
-    machines[i].efficiency = 1.0 / machines[i].nodes;
+    machines[i].efficiency = std::array{1.0, 0.1, 0.05}[i];
     machines[i].interconnect = machines[i + 3].interconnect = 0.95;
     machines[i + 3].machine = "cached";
     machines[i + 3].hit_ratio = 0.9;
-    machines[i + 3].efficiency = 1.0 - 0.4 * i;
+    machines[i + 3].efficiency = std::array{1.0, 0.9, 0.3}[i];
   }
   const auto verdict = [&] { return check_arguments(machines, {}, {})[1].verdict; };
   EXPECT_EQ(verdict(), Verdict::agrees) << "half is left at 10 nodes and at 2";
