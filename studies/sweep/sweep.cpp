@@ -82,12 +82,12 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
                       const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
-  tables::refuse_other_results(options.directory, tables::database_name);
   const sim::MadeDirectory made = show::prepare_output(options.directory);
   SweepReport report;
   report.store = options.directory / tables::database_name;
   report.points = options.directory / "points.csv";
   sim::refuse_input(report.points);
+  tables::refuse_other_results(options.directory, tables::database_name);
   // Nobody else may write the store from its check until the tables that follow from it are written.
   std::optional<StoreLock> lock(std::in_place, report.store);
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };

@@ -58,7 +58,7 @@ TEST(SchemesCommand, WrongInputIsTwoAndSaysWhere) {
   refused(" --set 'schemes.structures=[\"kd\"]'", "schemes.structures");
   refused(" --set schemes.stage_machine=marti.toml", "schemes.stage_machine");
   refused(" --set schemes.stage_nodes=2", "schemes.stage_nodes");
-  refused(" --set machine.nodes=4", "machine.nodes: this command does not read it");
+  refused(" --set machine.nodes=4", "machine.nodes=4: this command does not read it");
   refused(" --set frames.count=2", "frames.count");
 }
 
