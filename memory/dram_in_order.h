@@ -23,12 +23,12 @@ struct DramService {
   DramCycle end = 0;
 };
 
-/// Reads and writes move their data in the order in which they arrive. An access closes and opens rows once
-/// the one before it has opened its row, which may still wait for its data, or, where that row was open
-/// already, has had its last read or write command. An access that arrives in a cycle has its first command
-/// in the next one at the earliest. When a refresh is due, accesses whose rows were opened before end first,
-/// then all rows are closed and all ranks are refreshed. One command is issued in a cycle, and none keeps the
-/// bus from a read or write of an older access.
+/// Reads and writes move their data in the order in which they arrive. A burst closes and opens rows once the
+/// one before it has opened its row, which may still wait for its data, or, where that row was open already,
+/// has had its read or write command. An access that arrives in a cycle has its first command in the next one
+/// at the earliest. When a refresh is due, bursts that have opened their rows end first, then rank after rank
+/// closes its rows and is refreshed. One command is issued in a cycle, and none keeps the bus from a read or
+/// write of an older burst.
 ///
 /// No access moves the commands of one that arrived before it, so the whole course of an access is known when
 /// it arrives.

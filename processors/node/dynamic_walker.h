@@ -209,8 +209,7 @@ class DynamicWalker {
         case Todo::record: {
           cursor.todo = Todo::make;
           const std::uint32_t child = topology_.nodes[cursor.node].first + cursor.child++;
-          // What is built before the frame is the database of all; a private tree's own records are empty
-          // then.
+          // Before the frame the tree that all nodes share is built; a private tree's own records stay empty.
           write(cursor, cursor.before ? addresses_.initial_record(child) : addresses_.record(copy, child),
                 node_bytes());
           break;
