@@ -291,9 +291,11 @@ TEST(Dynamic, WhatIsBuiltBeginsWhereARecordMay) {
   machine.build.sharing = Sharing::shared;
   machine.layout.section_alignment = 1;
   machine.layout.record_alignment = 64;
-  std::optional<walk::TreePlan> plan;
-  (void)walk::layout_of(tiny_log(1), machine, plan);
-  EXPECT_EQ(plan->first_block() % 64, 0U);
+  const WorkLog log = tiny_log(1);
+  std::optional<walk::TreePlan> plan = walk::tree_plan_of(log, machine);
+  const memory::Layout layout = walk::layout_of(log, machine, plan);
+  EXPECT_NE(layout.end() % 64, 0U);
+  EXPECT_EQ(plan.value().first_block() % 64, 0U);
 }
 
 TEST(Dynamic, PrivateTreesAreBuiltTwiceInMemoryOfTheirOwn) {
