@@ -15,12 +15,20 @@ void declare_sections_of_other_commands(sim::Schema& schema) {
   }
   schema.elsewhere("sweep", "marti sweep");
   schema.elsewhere("prices", "marti sweep");
+  if (schema.is_section("record")) {
+    return;  // it is the schema of `marti run`, which has all sections below
+  }
   sim::Schema run;
   declare_frame_keys(run);
   declare_machine_keys(run);
   declare_record_keys(run);
+  std::string last;
   for (const sim::Key& key : run.keys()) {
-    schema.elsewhere(key.name.substr(0, key.name.find('.')), "marti run");
+    const std::string section = key.name.substr(0, key.name.find('.'));
+    if (section != last) {
+      schema.elsewhere(section, "marti run");
+      last = section;
+    }
   }
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/joined.h"
+#include "sim/mapped.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
@@ -53,10 +55,7 @@ LimitedPoints limited_points(const sweep::SweepReader& sweep, const std::optiona
       return std::vector<tables::Cell>(columns.size());
     }
     ++count[best != nullptr ? best->name : "nothing known"];
-    std::string others;
-    for (const PredictedStep* const step : limit->open()) {
-      others += (others.empty() ? "" : ", ") + step->name;
-    }
+    const std::string others = sim::joined(sim::mapped(limit->open(), &PredictedStep::name));
     open += others.empty() ? 0U : 1U;
     if (best == nullptr) {
       return {{}, {}, {}, others};

@@ -10,6 +10,7 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
+#include "sim/joined.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
@@ -155,7 +156,7 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
     return found == nullptr ? std::string("?") : *found;
   };
   std::size_t holding = 0;
-  std::string not_measured;
+  std::vector<std::string> not_measured;
   std::vector<std::string> others;
   for (std::size_t row = 0; row < table.rows().size(); ++row) {
     const std::string verdict = text(row, "verdict");
@@ -163,7 +164,7 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
     if (verdict == "agrees" || verdict == "pass") {
       ++holding;
     } else if (verdict == "not measured") {
-      not_measured += (not_measured.empty() ? "" : "; ") + subject;
+      not_measured.push_back(subject);
     } else {
       others.push_back(fmt::format("{}: {} ({}).", subject, text(row, claims ? "here" : "figure"), verdict));
     }
@@ -175,7 +176,7 @@ void take_verdicts(const tables::Table& table, ReportData& report) {
   }
   report.answer.insert(report.answer.end(), others.begin(), others.end());
   if (!not_measured.empty()) {
-    report.answer.push_back("Not measured here: " + not_measured + ".");
+    report.answer.push_back("Not measured here: " + sim::joined(not_measured, "; ") + ".");
   }
 }
 
