@@ -5,10 +5,10 @@
 #include <span>
 #include <utility>
 
-#include "accel/avx2.h"
 #include "accel/build_memory.h"
 #include "accel/frame.h"
 #include "accel/parallel.h"
+#include "sim/avx2.h"
 
 namespace marti::accel {
 
@@ -75,8 +75,8 @@ Bvh Bvh::build(std::shared_ptr<const TriangleSet> triangles, const BvhOptions& o
     return tree;
   }
   tree.space_ = BvhSpace(tree.frame_);
-#ifdef MARTI_ACCEL_AVX2
-  tree.vectors_ = has_avx2();
+#ifdef MARTI_AVX2
+  tree.vectors_ = sim::has_avx2();
 #endif
   tree.number_nodes(build_binary_bvh(*tree.triangles_, tree.space_, options));
   tree.order_records();

@@ -43,7 +43,7 @@ struct BvhView {
   const TriangleSet* triangles;
   const RootFrame* frame;
   BvhSpace space;
-  bool vectors;  ///< has_avx2()
+  bool vectors;  ///< sim::has_avx2()
 
   [[nodiscard]] std::uint32_t first_child(std::uint32_t record) const {
     if constexpr (requires { Node::first; }) {

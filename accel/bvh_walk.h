@@ -164,7 +164,7 @@ inline bool query_bvh(const BvhView<Node>& view, const Ray& ray, const RaySetup<
       return false;
     }
     const BvhRay<BoxFloat<Real>> moved = moved_ray(view.space, ray, start, setup);
-#ifdef MARTI_ACCEL_AVX2
+#ifdef MARTI_AVX2
     if constexpr (std::is_same_v<Real, double>) {
       if (view.vectors) {
         return walk_bvh_avx2<Any>(view, moved, distance, setup, best, visitor);

@@ -3,9 +3,9 @@
 // equal, bit for bit.
 #pragma once
 
-#include "accel/avx2.h"
+#include "sim/avx2.h"
 
-#ifdef MARTI_ACCEL_AVX2
+#ifdef MARTI_AVX2
 
 #include <immintrin.h>
 

@@ -35,9 +35,9 @@ OctreeNode record_of(const Topology& topology, const TopologyNode& node) {
 
 // Whether the leaves' triangles are gathered in packs.
 bool has_packs(const Topology& topology, const TriangleSet& triangles) {
-#ifdef MARTI_ACCEL_AVX2
-  return has_avx2() && (topology.entries.size() <= packed_entries_always ||
-                        topology.entries.size() <= packed_entries_per_triangle * triangles.size());
+#ifdef MARTI_AVX2
+  return sim::has_avx2() && (topology.entries.size() <= packed_entries_always ||
+                             topology.entries.size() <= packed_entries_per_triangle * triangles.size());
 #else
   static_cast<void>(topology);
   static_cast<void>(triangles);

@@ -141,7 +141,7 @@ inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>&
   if (!start.hits_root) {
     return false;
   }
-#ifdef MARTI_ACCEL_AVX2
+#ifdef MARTI_AVX2
   // As four triangles are tested at a time, mailbox look-ups one by one would gain nothing.
   if constexpr (std::is_same_v<Real, double> && View::has_packs && !has_mailboxes<Visitor>) {
     if (view.packed != nullptr) {

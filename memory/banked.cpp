@@ -15,7 +15,7 @@ Banked::Banked(const BankConfig& banks, const InterconnectSite& site, sim::Ticks
 
 Banked::~Banked() = default;
 
-const std::vector<BankStatistics>& Banked::bank_statistics() const {
+std::vector<BankStatistics> Banked::bank_statistics() const {
   return late_ ? late_->bank_statistics() : banks_.statistics();
 }
 

@@ -27,10 +27,11 @@ Distributed::Distributed(const DistributedConfig& config, const InterconnectSite
       access_(config.clock.cycles(config.access_cycles)),
       beat_(config.clock.cycles(config.cycles_per_beat)),
       width_(config.width),
+      beats_of_(std::max(config.width, 1U)),
       network_(make_network(config.network, config.nodes)),
-      free_at_(config.nodes),
-      ports_(site.ports),
-      banks_(config.nodes) {
+      homes_(config.nodes),
+      reads_(site.ports),
+      writes_(site.ports) {
   if (config.width == 0 || config.header_bytes == 0) {
     throw sim::UserError(
         "local memory must be at least one byte wide, and a message's header must not be empty");
@@ -53,14 +54,29 @@ Ticks Distributed::unloaded_read(std::uint32_t bytes) const {
 
 BankAccess Distributed::access(std::uint32_t home, std::uint32_t bytes) {
   const Ticks now = site_.engine.now();
-  const Ticks start = std::max(now, free_at_[home]);
+  Home& at = homes_[home];
+  const Ticks start = std::max(now, at.free_at);
   const Ticks length = add_ticks(access_, beats(bytes));
-  free_at_[home] = add_ticks(start, length);
-  BankStatistics& bank = banks_[home];
-  ++bank.accesses;
-  bank.busy = add_ticks(bank.busy, length);
-  bank.waits.add(start - now);
-  return {start, free_at_[home]};
+  at.free_at = add_ticks(start, length);
+  if (start == now) [[likely]] {
+    ++at.unwaited;
+    at.unwaited_busy = add_ticks(at.unwaited_busy, length);
+  } else {
+    at.waited.add(length, start - now);
+  }
+  return {start, at.free_at};
+}
+
+std::vector<BankStatistics> Distributed::bank_statistics() const {
+  std::vector<BankStatistics> banks;
+  banks.reserve(homes_.size());
+  for (const Home& home : homes_) {
+    BankStatistics& bank = banks.emplace_back(home.waited);
+    bank.accesses += home.unwaited;
+    bank.busy = add_ticks(bank.busy, home.unwaited_busy);
+    bank.waits.add_unwaited(home.unwaited);
+  }
+  return banks;
 }
 
 Delivery Distributed::send(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) {
@@ -89,7 +105,7 @@ void Distributed::read(const Transaction& transaction) {
   }
   ++distribution_.remote_reads;
   const Delivery request = send(node, home, header_);
-  ports_[transaction.port].read = {{0, request.wait, request.transfer, 0, 0}, home, transaction.bytes, false};
+  reads_[transaction.port] = {{0, request.wait, request.transfer, 0, 0}, home, transaction.bytes, false};
   post(request.arrival, transaction.port, 0);
 }
 
@@ -98,7 +114,7 @@ void Distributed::write(const Transaction& transaction) {
   statistics_.bytes += transaction.bytes;
   const std::uint32_t node = node_of(transaction.port);
   const std::uint32_t home = home_of(transaction.address);
-  Port& port = ports_[transaction.port];
+  PortWrites& port = writes_[transaction.port];
   port.writes.push_back({home, transaction.bytes});
   if (home == node) {
     ++distribution_.local_writes;
@@ -115,7 +131,7 @@ void Distributed::proceed(std::uint32_t port, std::uint32_t sequence) {
     arrive(port, sequence - 1);
     return;
   }
-  Read& read = ports_[port].read;
+  Read& read = reads_[port];
   if (!read.served) {
     const BankAccess served = access(read.home, read.bytes);
     read.served = true;
@@ -132,13 +148,13 @@ void Distributed::proceed(std::uint32_t port, std::uint32_t sequence) {
 }
 
 void Distributed::arrive(std::uint32_t port, std::uint32_t number) {
-  const std::size_t place = (number + write_numbers - ports_[port].first) % write_numbers;
-  const Write& write = ports_[port].writes[place];
+  const std::size_t place = (number + write_numbers - writes_[port].first) % write_numbers;
+  const Write& write = writes_[port].writes[place];
   finish(port, place, access(write.home, write.bytes).ready);
 }
 
 void Distributed::finish(std::uint32_t port, std::size_t place, Ticks done) {
-  Port& p = ports_[port];
+  PortWrites& p = writes_[port];
   p.writes[place].done = done;
   while (!p.writes.empty() && p.writes.front().done != not_done) {
     const Ticks oldest = p.writes.front().done;

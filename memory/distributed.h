@@ -14,6 +14,8 @@
 
 #include "memory/interconnect.h"
 #include "memory/network.h"
+#include "sim/divider.h"
+#include "sim/large_pages.h"
 #include "sim/prefetch.h"
 
 namespace marti::memory {
@@ -65,9 +67,16 @@ class Distributed final : public Interconnect {
   void read(const Transaction& transaction) override;
   void write(const Transaction& transaction) override;
   void proceed(std::uint32_t port, std::uint32_t sequence) override;
-  void prepare(std::uint32_t port) const override { sim::prefetch(ports_[port]); }
+  void prepare(std::uint32_t port) const override { sim::prefetch(reads_[port]); }
+  bool prepare_more(std::uint32_t port) const override {
+    const Read& read = reads_[port];
+    if (!read.served) {
+      sim::prefetch_line(&homes_[read.home]);
+    }
+    return read.served;
+  }
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override { return banks_; }
+  [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override;
   /// The mean over all homes, for node 0, rounded down.
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
 
@@ -77,23 +86,31 @@ class Distributed final : public Interconnect {
   }
 
  private:
-  // A port's read, from its request to its data.
-  struct Read {
+  // A port's read, from its request to its data. It lies in one cache line of the host, as does most of what
+  // is kept of a home: with many nodes these are out of the host's caches at each read.
+  struct alignas(64) Read {
     Service service;
     std::uint32_t home = 0;
     std::uint32_t bytes = 0;
     bool served = false;  // the memory has served it; the data must still be sent
   };
+  static_assert(sizeof(Read) == 64);
   // A port's write that has not reached its home yet, or that is done before an older one.
   struct Write {
     std::uint32_t home = 0;
     std::uint32_t bytes = 0;
     sim::Ticks done = not_done;
   };
-  struct Port {
-    Read read;
+  struct PortWrites {
     std::vector<Write> writes;  // oldest first; few: what the write buffer holds
     std::uint32_t first = 0;    // number of the oldest
+  };
+  // The memory of a node. Accesses that do not wait, nearly all, are counted beside the others.
+  struct alignas(64) Home {
+    sim::Ticks free_at = 0;
+    std::int64_t unwaited = 0;
+    sim::Ticks unwaited_busy = 0;
+    BankStatistics waited;
   };
   static constexpr sim::Ticks not_done = -1;
 
@@ -105,7 +122,7 @@ class Distributed final : public Interconnect {
     return ports_per_node_ == 1 ? port : port / ports_per_node_;
   }
   [[nodiscard]] sim::Ticks beats(std::uint32_t bytes) const {
-    return sim::multiply_ticks(beat_, (std::int64_t{bytes} + width_ - 1) / width_);
+    return sim::multiply_ticks(beat_, static_cast<std::int64_t>(beats_of_(bytes + width_ - 1)));
   }
   // Starts an access of `bytes` that arrives at the home now; returns its start and its end.
   BankAccess access(std::uint32_t home, std::uint32_t bytes);
@@ -124,11 +141,12 @@ class Distributed final : public Interconnect {
   std::uint32_t header_;
   sim::Ticks access_;
   sim::Ticks beat_;
-  std::int64_t width_;
+  std::uint64_t width_;
+  sim::Divider beats_of_;
   std::unique_ptr<Network> network_;
-  std::vector<sim::Ticks> free_at_;  // each home's memory
-  std::vector<Port> ports_;
-  std::vector<BankStatistics> banks_;
+  sim::LargeVector<Home> homes_;
+  sim::LargeVector<Read> reads_;    // of each port
+  std::vector<PortWrites> writes_;  // of each port
   InterconnectStatistics statistics_;
   DistributedStatistics distribution_;
 };

@@ -31,7 +31,7 @@ class Ideal final : public Interconnect {
     site_.client.write_done(transaction.port, sim::add_ticks(site_.engine.now(), latency_));
   }
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const override { return no_banks_; }
+  [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override { return no_banks_; }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t /*bytes*/) const override { return latency_; }
 
  private:

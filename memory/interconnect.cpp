@@ -14,6 +14,8 @@ void Interconnect::reply(std::uint32_t /*port*/) {
 
 void Interconnect::prepare(std::uint32_t /*port*/) const {}
 
+bool Interconnect::prepare_more(std::uint32_t /*port*/) const { return false; }
+
 void Interconnect::proceed(std::uint32_t /*port*/, std::uint32_t /*sequence*/) {
   throw sim::InternalError("an event of the memory's own for an interconnect that posts none");
 }

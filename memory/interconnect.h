@@ -118,10 +118,13 @@ class Interconnect {
   virtual void proceed(std::uint32_t port, std::uint32_t sequence);
   /// Prefetches what is kept for a port into the host's caches. A hint: it affects nothing but speed.
   virtual void prepare(std::uint32_t port) const;
+  /// As prepare(), a little later, for a port whose next event is one of the memory class: prefetches what
+  /// that needs beside. Whether it will report the port's read as done.
+  virtual bool prepare_more(std::uint32_t port) const;
 
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks; empty where no banks are modelled.
-  [[nodiscard]] virtual const std::vector<BankStatistics>& bank_statistics() const = 0;
+  [[nodiscard]] virtual std::vector<BankStatistics> bank_statistics() const = 0;
   /// Statistics of each channel of a DRAM memory; empty where there is none.
   [[nodiscard]] virtual std::vector<DramStatistics> dram_statistics() const { return {}; }
   /// The destinations of accesses to a distributed memory; null for all others.

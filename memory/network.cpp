@@ -1,8 +1,8 @@
 #include "memory/network.h"
 
 #include <algorithm>
-#include <vector>
 
+#include "memory/link_times.h"
 #include "memory/routes.h"
 #include "sim/divider.h"
 #include "sim/error.h"
@@ -77,7 +77,7 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
 
  public:
   RoutedNetwork(const NetworkConfig& config, std::uint32_t nodes)
-      : Base(config, nodes), routes_(nodes), free_at_(routes_.table_size()) {
+      : Base(config, nodes), routes_(nodes), links_(routes_.table_size()) {
     statistics_.links = routes_.links();
   }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const override {
@@ -85,36 +85,27 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
   }
 
   Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) {
-    // Each link's time is written as if all links began at once, that is, less the latency of the hops before
-    // it. Then the message begins at the latest of `now` and the times at which its links become free. No
-    // time is later than the arrival, for which it is checked that it fits.
-    const auto hop = static_cast<std::uint64_t>(hop_);
+    // No time is later than the arrival, for which it is checked that it fits.
     const Ticks held = holds_hop ? add_ticks(hop_, data) : data;
-    std::uint64_t latency = 0;
-    Ticks begin = now;
+    Crossing crossing = {static_cast<std::uint64_t>(now), static_cast<std::uint64_t>(hop_),
+                         static_cast<std::uint64_t>(held)};
     std::int64_t links = 0;
-    routes_.runs(from, to, [&](std::size_t link, std::size_t step, std::uint32_t count) {
-      Ticks* const free_at = free_at_.data();
-      Ticks at = begin;
-      std::uint64_t before = latency;
-      for (std::uint32_t left = count; left != 0; --left, link += step, before += hop) {
-        at = std::max(at, static_cast<Ticks>(static_cast<std::uint64_t>(free_at[link]) - before));
-        free_at[link] =
-            static_cast<Ticks>(static_cast<std::uint64_t>(at) + before + static_cast<std::uint64_t>(held));
-      }
-      begin = at;
-      latency = before;
+    routes_.runs(from, to, [&](std::size_t first, std::uint32_t count) {
+      links_.take(first, count, crossing);
       links += count;
     });
     statistics_.hops += links;
     statistics_.busy = add_ticks(statistics_.busy, sim::multiply_ticks(held, links));
-    const Ticks transfer = add_ticks(sim::multiply_ticks(hop_, links), data);
-    return {add_ticks(begin, transfer), begin - now, transfer};
+    const Ticks hops = sim::multiply_ticks(hop_, links);
+    const Ticks transfer = add_ticks(hops, data);
+    const auto wait = static_cast<Ticks>(crossing.head - static_cast<std::uint64_t>(now) -
+                                         static_cast<std::uint64_t>(hops));
+    return {add_ticks(add_ticks(now, wait), transfer), wait, transfer};
   }
 
  private:
   Routes routes_;
-  std::vector<Ticks> free_at_;  // when each link is free
+  LinkTimes links_;
 };
 
 }  // namespace

@@ -2,8 +2,8 @@
 //
 // A `Routes` has: table_size(), the number of link numbers; links(), how many of these are links; hops(from,
 // to); route(from, to, cross), which calls cross(link) for each link of the route in order; and runs(from,
-// to, visit), which calls visit(first, step, links) for so many links at a time, whose numbers are `step`
-// apart (modulo 2^64). Ports are as in network.h: the nodes and, last, the host. `from` and `to` differ.
+// to, visit), which calls visit(first, links) for so many links at a time, which have consecutive numbers.
+// Ports are as in network.h: the nodes and, last, the host. `from` and `to` differ.
 #pragma once
 
 #include <bit>
@@ -21,12 +21,11 @@ class RunByRun {
  public:
   template <class Cross>
   void route(std::uint32_t from, std::uint32_t to, Cross&& cross) const {
-    static_cast<const Kind&>(*this).runs(from, to,
-                                         [&](std::size_t link, std::size_t step, std::uint32_t links) {
-                                           for (; links != 0; --links, link += step) {
-                                             cross(link);
-                                           }
-                                         });
+    static_cast<const Kind&>(*this).runs(from, to, [&](std::size_t link, std::uint32_t links) {
+      for (; links != 0; --links, ++link) {
+        cross(link);
+      }
+    });
   }
 };
 
@@ -39,7 +38,7 @@ class BusRoutes : public RunByRun<BusRoutes> {
   [[nodiscard]] static std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) { return 1; }
   template <class Visit>
   static void runs(std::uint32_t /*from*/, std::uint32_t /*to*/, Visit&& visit) {
-    visit(std::size_t{0}, std::size_t{1}, 1U);
+    visit(std::size_t{0}, 1U);
   }
 };
 
@@ -52,7 +51,7 @@ class CrossbarRoutes : public RunByRun<CrossbarRoutes> {
   [[nodiscard]] static std::uint32_t hops(std::uint32_t /*from*/, std::uint32_t /*to*/) { return 1; }
   template <class Visit>
   static void runs(std::uint32_t /*from*/, std::uint32_t to, Visit&& visit) {
-    visit(std::size_t{to}, std::size_t{1}, 1U);
+    visit(std::size_t{to}, 1U);
   }
 
  private:
@@ -73,11 +72,11 @@ class WithHost : public RunByRun<WithHost<Between>> {
   template <class Visit>
   void runs(std::uint32_t from, std::uint32_t to, Visit&& visit) const {
     if (from == host_) {
-      visit(between_.table_size(), std::size_t{1}, 1U);
+      visit(between_.table_size(), 1U);
     }
     between_.runs(router(from), router(to), visit);
     if (to == host_) {
-      visit(between_.table_size() + 1, std::size_t{1}, 1U);
+      visit(between_.table_size() + 1, 1U);
     }
   }
 
@@ -94,8 +93,8 @@ class WithHost : public RunByRun<WithHost<Between>> {
 /// columns of the short row are complete, and its destination lies in a full row. All turns from a column
 /// into a row are thus upwards and to the right, which creates no cycle of waiting messages.
 ///
-/// Links of a row, and of a column, in one direction have consecutive numbers: in a large mesh a message
-/// crosses hundreds of them, and their entries in a table should share the host's cache lines.
+/// Links of a row, and of a column, have consecutive numbers in the order in which messages cross them: in a
+/// large mesh a message crosses hundreds, whose entries in a table are used several at a time.
 class MeshRoutes : public RunByRun<MeshRoutes> {
  public:
   explicit MeshRoutes(std::uint32_t nodes) : nodes_(nodes), columns_(columns_of(nodes)), row_of_(columns_) {
@@ -146,22 +145,21 @@ class MeshRoutes : public RunByRun<MeshRoutes> {
   // Links to the right, to the left, down and up follow one another in tables of so many.
   template <class Visit>
   void along_row(Place at, std::uint32_t column, Visit&& visit) const {
-    const std::size_t router = std::size_t{at.row} * columns_ + at.column;
-    straight(router, at.column, column, visit);
+    straight(std::size_t{at.row} * columns_, columns_, at.column, column, visit);
   }
   template <class Visit>
   void along_column(Place at, std::uint32_t row, Visit&& visit) const {
-    const std::size_t router = std::size_t{at.column} * (last_row_ + 1) + at.row;
-    straight(2 * places() + router, at.row, row, visit);
+    const std::uint32_t rows = last_row_ + 1;
+    straight(2 * places() + std::size_t{at.column} * rows, rows, at.row, row, visit);
   }
-  // The links between two places of a row or column. `first`: that onwards from the first of them.
+  // The links between two of the `routers` routers of a row or column. `first`: that onwards from number 0.
+  // Written so that compilers need no branch, which would not be predictable.
   template <class Visit>
-  void straight(std::size_t first, std::uint32_t from, std::uint32_t to, Visit&& visit) const {
-    if (from < to) {
-      visit(first, std::size_t{1}, to - from);
-    } else {
-      visit(first + places(), std::size_t{0} - 1, from - to);
-    }
+  void straight(std::size_t first, std::uint32_t routers, std::uint32_t from, std::uint32_t to,
+                Visit&& visit) const {
+    const bool onwards = from < to;
+    const std::uint32_t links = onwards ? to - from : from - to;
+    visit(first + (onwards ? from : places() + (routers - 1 - from)), links);
   }
 
   std::uint32_t nodes_;
@@ -199,8 +197,7 @@ class HypercubeRoutes : public RunByRun<HypercubeRoutes> {
       while ((at ^ (left & -left)) >= nodes_) {
         left &= left - 1;
       }
-      visit(std::size_t{at} * dimension_ + static_cast<std::size_t>(std::countr_zero(left)), std::size_t{1},
-            1U);
+      visit(std::size_t{at} * dimension_ + static_cast<std::size_t>(std::countr_zero(left)), 1U);
       at ^= left & -left;
     }
   }

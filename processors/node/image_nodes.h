@@ -86,20 +86,19 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     interconnect_of(node).prepare(port_of(node));
-    if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory)) {
-      return;  // most of these do not come to the node
-    }
     sim::prefetch_line(&cursors_[node]);
     if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
-      const cost::NodeStatistics& statistics = statistics_[node];
-      sim::prefetch_line(&statistics.time[static_cast<std::size_t>(cost::Activity::interconnect_wait)]);
-      sim::prefetch_line(&statistics.references.misses);
-      walker_.prefetch(cursors_[node], statistics);
+      prepare_reply(node);
     }
   }
   void prepare_more(const sim::Event& event) override {
+    const std::uint32_t node = event.component();
     if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
-      walker_.prefetch_steps(cursors_[event.component()]);
+      walker_.prefetch_steps(cursors_[node]);
+    } else if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory) &&
+               interconnect_of(node).prepare_more(port_of(node))) {
+      prepare_reply(node);
+      walker_.prefetch_steps(cursors_[node]);
     }
   }
 
@@ -127,6 +126,14 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   std::size_t bytes_per_node() const override { return Base::common_bytes(); }
 
  private:
+  // Prefetches what the end of a read changes beside the first cache line of the cursor.
+  void prepare_reply(std::uint32_t node) const {
+    const cost::NodeStatistics& statistics = statistics_[node];
+    sim::prefetch_line(&statistics.time[static_cast<std::size_t>(cost::Activity::interconnect_wait)]);
+    sim::prefetch_line(&statistics.references.misses);
+    walker_.prefetch(cursors_[node], statistics);
+  }
+
   void count_own_reads() {
     for (std::uint32_t cluster = 0; cluster < input_.config.clusters; ++cluster) {
       const std::uint32_t first = cluster * input_.config.nodes;

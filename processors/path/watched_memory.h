@@ -27,7 +27,7 @@ class WatchedMemory final : public memory::Interconnect, private memory::Interco
   [[nodiscard]] const memory::InterconnectStatistics& statistics() const override {
     return memory_->statistics();
   }
-  [[nodiscard]] const std::vector<memory::BankStatistics>& bank_statistics() const override {
+  [[nodiscard]] std::vector<memory::BankStatistics> bank_statistics() const override {
     return memory_->bank_statistics();
   }
   [[nodiscard]] std::vector<memory::DramStatistics> dram_statistics() const override {

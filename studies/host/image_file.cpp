@@ -12,6 +12,7 @@
 #include "scenes/texture.h"
 #include "sim/error.h"
 #include "studies/host/image_codec.h"
+#include "studies/host/image_libraries.h"
 
 namespace marti::studies::host {
 
@@ -24,6 +25,14 @@ const ImageCodec& load_codec() {
   // half-made pool of threads would wait for ever. A thread of its own has no catch, so nothing is unwound,
   // and the program ends with the message of studies/cli/last_words.cpp.
   std::thread([&] {
+    // Each name that a library needs is looked for in all libraries that are loaded with it. Loaded one by
+    // one, those that are needed before those that need them, they take half as long as all at once. What
+    // cannot be loaded alone is loaded with the library that needs it.
+    for (const char* const name : image_libraries) {
+      if (name != nullptr) {
+        static_cast<void>(dlopen(name, RTLD_LAZY));
+      }
+    }
     // Found as the libraries are that the program is linked to: by the loader's settings, then its RUNPATH
     // (studies/CMakeLists.txt). It stays loaded, because OpenImageIO keeps threads.
     void* const library = dlopen("marti_image_codec.so", RTLD_LAZY);

@@ -1,12 +1,12 @@
-#include "accel/avx2.h"
+#include "sim/avx2.h"
 
-namespace marti::accel {
+namespace marti::sim {
 
-#ifdef MARTI_ACCEL_AVX2
+#ifdef MARTI_AVX2
 bool has_avx2() {
   static const bool has = __builtin_cpu_supports("avx2") != 0;
   return has;
 }
 #endif
 
-}  // namespace marti::accel
+}  // namespace marti::sim
