@@ -29,9 +29,7 @@ const ImageCodec& load_codec() {
     // one, those that are needed before those that need them, they take half as long as all at once. What
     // cannot be loaded alone is loaded with the library that needs it.
     for (const char* const name : image_libraries) {
-      if (name != nullptr) {
-        static_cast<void>(dlopen(name, RTLD_LAZY));
-      }
+      static_cast<void>(dlopen(name, RTLD_LAZY));
     }
     // Found as the libraries are that the program is linked to: by the loader's settings, then its RUNPATH
     // (studies/CMakeLists.txt). It stays loaded, because OpenImageIO keeps threads.
