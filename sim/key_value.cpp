@@ -36,7 +36,7 @@ std::string expectation(const Key& key) {
     case ValueType::text:
       return "a text in quotation marks";
     case ValueType::choice:
-      return print_range(key);
+      return print_range(key) + " in quotation marks";
     case ValueType::size:
       return "a size such as \"16 KiB\"";
     case ValueType::frequency:

@@ -40,7 +40,7 @@ void read_stages(const sim::Config& config, PipelineConfig& pipeline, std::uint3
     }
   } else if (given != stages.size()) {
     for (const auto& [key, member] : stages) {
-      if (pipeline.*member == 0) {
+      if (pipeline.*member != 0) {
         config.fail(key,
                     "give the nodes of all three stages (pipeline.search, pipeline.nearest, pipeline.shade), "
                     "or of none for their shares of machine.nodes");

@@ -137,6 +137,8 @@ TEST(Config, WrongInputIsNamedWithFileLineAndKey) {
            "a.toml:1: cache.replacement: must be lru, fifo or random, not \"lry\" (did you mean \"lru\"?)"},
           {"node.clock = 33",
            "a.toml:1: node.clock: must be a frequency such as \"33 MHz\", not the integer 33"},
+          {"cache.replacement = 4",
+           "a.toml:1: cache.replacement: must be lru, fifo or random in quotation marks, not the integer 4"},
           {"scene.file = 3", "a.toml:1: scene.file: must be a text in quotation marks, not the integer 3"},
           {"nodes = 2\nwhat = 1\nnodez = 3", "a.toml:2: what: unknown key; `marti config` lists all keys"}}) {
     EXPECT_EQ(error_of(wrong.text), wrong.message) << wrong.text;
