@@ -1,6 +1,7 @@
 #include "studies/host/image_file.h"
 
 #include <dlfcn.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,21 @@ namespace marti::studies::host {
 
 namespace {
 
+// Each name that a library needs is looked for in all libraries that are loaded with it. Loaded one by one,
+// those that are needed before those that need them, they take half as long as all at once. What cannot be
+// loaded alone is loaded with the library that needs it.
+void load_one_by_one() {
+  // Where the address space is limited, some find no room for what they do when they are loaded, and write
+  // about it. All at once, they are refused before any does something.
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur != RLIM_INFINITY) {
+    return;
+  }
+  for (const char* const name : image_libraries) {
+    static_cast<void>(dlopen(name, RTLD_LAZY));
+  }
+}
+
 const ImageCodec& load_codec() {
   void* function = nullptr;
   std::string why;
@@ -25,12 +41,7 @@ const ImageCodec& load_codec() {
   // half-made pool of threads would wait for ever. A thread of its own has no catch, so nothing is unwound,
   // and the program ends with the message of studies/cli/last_words.cpp.
   std::thread([&] {
-    // Each name that a library needs is looked for in all libraries that are loaded with it. Loaded one by
-    // one, those that are needed before those that need them, they take half as long as all at once. What
-    // cannot be loaded alone is loaded with the library that needs it.
-    for (const char* const name : image_libraries) {
-      static_cast<void>(dlopen(name, RTLD_LAZY));
-    }
+    load_one_by_one();
     // Found as the libraries are that the program is linked to: by the loader's settings, then its RUNPATH
     // (studies/CMakeLists.txt). It stays loaded, because OpenImageIO keeps threads.
     void* const library = dlopen("marti_image_codec.so", RTLD_LAZY);
