@@ -25,9 +25,7 @@ Distributed::Distributed(const DistributedConfig& config, const InterconnectSite
       interleave_shift_(static_cast<std::uint32_t>(std::countr_zero(config.interleave))),
       header_(config.header_bytes),
       access_(config.clock.cycles(config.access_cycles)),
-      beat_(config.clock.cycles(config.cycles_per_beat)),
-      width_(config.width),
-      beats_of_(std::max(config.width, 1U)),
+      beats_(config.clock.cycles(config.cycles_per_beat), config.width),
       network_(make_network(config.network, config.nodes)),
       homes_(config.nodes),
       reads_(site.ports),
@@ -44,7 +42,7 @@ Distributed::Distributed(const DistributedConfig& config, const InterconnectSite
 }
 
 Ticks Distributed::unloaded_read(std::uint32_t bytes) const {
-  const Ticks memory = add_ticks(access_, beats(bytes));
+  const Ticks memory = add_ticks(access_, beats_(bytes));
   __extension__ __int128 messages = 0;  // the sum may overflow though the mean fits
   for (std::uint32_t home = 1; home < nodes_; ++home) {
     messages += add_ticks(network_->unloaded(0, home, header_), network_->unloaded(home, 0, header_ + bytes));
@@ -56,7 +54,7 @@ BankAccess Distributed::access(std::uint32_t home, std::uint32_t bytes) {
   const Ticks now = site_.engine.now();
   Home& at = homes_[home];
   const Ticks start = std::max(now, at.free_at);
-  const Ticks length = add_ticks(access_, beats(bytes));
+  const Ticks length = add_ticks(access_, beats_(bytes));
   at.free_at = add_ticks(start, length);
   if (start == now) [[likely]] {
     ++at.unwaited;
@@ -100,7 +98,7 @@ void Distributed::read(const Transaction& transaction) {
     const Ticks now = site_.engine.now();
     const BankAccess served = access(home, transaction.bytes);
     site_.client.read_done(transaction.port,
-                           {served.ready, 0, beats(transaction.bytes), served.start - now, access_});
+                           {served.ready, 0, beats_(transaction.bytes), served.start - now, access_});
     return;
   }
   ++distribution_.remote_reads;
@@ -137,7 +135,7 @@ void Distributed::proceed(std::uint32_t port, std::uint32_t sequence) {
     read.served = true;
     read.service.wait_bank = served.start - site_.engine.now();
     read.service.bank = access_;
-    read.service.transfer += beats(read.bytes);
+    read.service.transfer += beats_(read.bytes);
     post(served.ready, port, 0);
     return;
   }

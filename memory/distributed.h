@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
+#include "memory/beats.h"
 #include "memory/interconnect.h"
 #include "memory/network.h"
-#include "sim/divider.h"
 #include "sim/large_pages.h"
 #include "sim/prefetch.h"
 
@@ -121,9 +121,6 @@ class Distributed final : public Interconnect {
   [[nodiscard]] std::uint32_t node_of(std::uint32_t port) const {
     return ports_per_node_ == 1 ? port : port / ports_per_node_;
   }
-  [[nodiscard]] sim::Ticks beats(std::uint32_t bytes) const {
-    return sim::multiply_ticks(beat_, static_cast<std::int64_t>(beats_of_(bytes + width_ - 1)));
-  }
   // Starts an access of `bytes` that arrives at the home now; returns its start and its end.
   BankAccess access(std::uint32_t home, std::uint32_t bytes);
   Delivery send(std::uint32_t from, std::uint32_t to, std::uint32_t bytes);
@@ -140,9 +137,7 @@ class Distributed final : public Interconnect {
   std::uint32_t interleave_shift_;
   std::uint32_t header_;
   sim::Ticks access_;
-  sim::Ticks beat_;
-  std::uint64_t width_;
-  sim::Divider beats_of_;
+  Beats beats_;
   std::unique_ptr<Network> network_;
   sim::LargeVector<Home> homes_;
   sim::LargeVector<Read> reads_;    // of each port

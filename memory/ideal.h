@@ -31,7 +31,7 @@ class Ideal final : public Interconnect {
     site_.client.write_done(transaction.port, sim::add_ticks(site_.engine.now(), latency_));
   }
   [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
-  [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override { return no_banks_; }
+  [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override { return {}; }
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t /*bytes*/) const override { return latency_; }
 
  private:
@@ -44,7 +44,6 @@ class Ideal final : public Interconnect {
   InterconnectSite site_;
   sim::Ticks latency_;
   InterconnectStatistics statistics_;
-  std::vector<BankStatistics> no_banks_;
 };
 
 }  // namespace marti::memory

@@ -1,10 +1,8 @@
 #include "memory/network.h"
 
-#include <algorithm>
-
+#include "memory/beats.h"
 #include "memory/link_times.h"
 #include "memory/routes.h"
-#include "sim/divider.h"
 #include "sim/error.h"
 
 namespace marti::memory {
@@ -26,7 +24,7 @@ class CountedNetwork : public Network {
       return {now, 0, 0};
     }
     const std::int64_t hops_before = statistics_.hops;
-    const Delivery delivery = static_cast<Kind&>(*this).carry(now, from, to, beats(bytes));
+    const Delivery delivery = static_cast<Kind&>(*this).carry(now, from, to, beats_(bytes));
     ++statistics_.messages;
     statistics_.bytes += bytes;
     statistics_.link_bytes += bytes * (statistics_.hops - hops_before);
@@ -38,23 +36,15 @@ class CountedNetwork : public Network {
  protected:
   CountedNetwork(const NetworkConfig& config, std::uint32_t nodes)
       : hop_(config.clock.cycles(config.hop_cycles)),
-        nodes_(nodes),
-        width_(config.width),
-        beats_of_(config.width),
-        beat_(config.clock.cycles(config.cycles_per_beat)) {}
-
-  Ticks beats(std::uint32_t bytes) const {
-    return sim::multiply_ticks(beat_, static_cast<std::int64_t>(beats_of_(bytes + width_ - 1)));
-  }
+        beats_(config.clock.cycles(config.cycles_per_beat), config.width),
+        nodes_(nodes) {}
 
   Ticks hop_;
   NetworkStatistics statistics_;
+  Beats beats_;
 
  private:
   std::uint32_t nodes_;
-  std::uint64_t width_;
-  sim::Divider beats_of_;
-  Ticks beat_;
 };
 
 class IdealNetwork final : public CountedNetwork<IdealNetwork> {
@@ -81,7 +71,7 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
     statistics_.links = routes_.links();
   }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const override {
-    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, routes_.hops(from, to)), Base::beats(bytes));
+    return from == to ? 0 : add_ticks(sim::multiply_ticks(hop_, routes_.hops(from, to)), Base::beats_(bytes));
   }
 
   Delivery carry(Ticks now, std::uint32_t from, std::uint32_t to, Ticks data) {
