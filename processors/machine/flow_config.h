@@ -39,7 +39,7 @@ inline constexpr std::uint32_t pipeline_stages = 3;
 
 /// How many rays may be in flight at a time without a deadlock, in which a cycle of stages is full and each
 /// waits for the next: one less than fill the queues and nodes of the search stage and of the smaller of the
-/// other two stages. See docs/pipeline.md.
+/// other two stages. See docs/internals/pipeline.md.
 [[nodiscard]] std::uint32_t most_in_flight(const PipelineConfig& pipeline);
 
 /// How regions are dealt out. blocks: runs of neighbouring regions. scatter: region i to node i modulo nodes.

@@ -1,5 +1,5 @@
 // The pipeline scheme, after LINKS-1: nodes search, test or shade, and rays go round between them.
-// docs/pipeline.md has its rules and the argument that it cannot deadlock.
+// docs/internals/pipeline.md has its rules and the argument that it cannot deadlock.
 #pragma once
 
 #include "processors/replay/replay.h"

@@ -9,7 +9,7 @@
 // of arrival. What rays add to a pixel is sent to the host, so no node waits for a reply.
 //
 // Deadlock is impossible: a ray for which the next node has no room is set aside in the memory of the node
-// where it is, so no node waits while it holds a ray (docs/space.md).
+// where it is, so no node waits while it holds a ray (docs/internals/space.md).
 #pragma once
 
 #include "processors/replay/replay.h"

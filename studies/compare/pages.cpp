@@ -48,7 +48,7 @@ void add_machine_part(const std::vector<Difference>& settings, const std::string
 
 report::ReportChart times_chart(const std::vector<ActivityTime>& times, double end) {
   tables::Table table("compare_times", "Where the time went",
-                      {tables::text_column("activity", "see docs/model.md, Accounting"),
+                      {tables::text_column("activity", "see docs/internals/model.md, Accounting"),
                        tables::integer_column("a_ps", "ps", "mean of a node of A"),
                        tables::integer_column("b_ps", "ps", "mean of a node of B"),
                        tables::real_column("change_ms", "ms", "B less A"),
@@ -64,7 +64,7 @@ report::ReportChart times_chart(const std::vector<ActivityTime>& times, double e
 report::SortedTable times_table(const std::vector<ActivityTime>& times, double end) {
   report::SortedTable table;
   table.title = "Mean time of a node by activity";
-  table.columns = {{"activity", false, "see docs/model.md, Accounting"},
+  table.columns = {{"activity", false, "see docs/internals/model.md, Accounting"},
                    {"A", true, ""},
                    {"B", true, ""},
                    {"change", true, "B less A"},
@@ -204,7 +204,7 @@ ComparisonPage page_of(const TwoSweeps& found) {
   if (!found.times.empty()) {
     report::SortedTable times;
     times.title = "Mean change of a node's time by activity";
-    times.columns = {{"activity", false, "see docs/model.md, Accounting"},
+    times.columns = {{"activity", false, "see docs/internals/model.md, Accounting"},
                      {"of A's frame", true, "B less A by the frame time of A, mean of the points"}};
     for (const MeanChange& time : found.times) {
       times.rows.push_back({{time.activity, {}}, {tables::signed_percent(time.of_frame), time.of_frame}});

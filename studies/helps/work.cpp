@@ -4,7 +4,7 @@ namespace marti::studies::helps {
 
 namespace {
 
-// Found by timing (docs/benchmarks.md); docs/model.md has the table.
+// Found by timing (docs/benchmarks.md); docs/internals/model.md has the table.
 constexpr Work traced_step = 8;
 constexpr Work walked_reference = 4;
 constexpr Work stripped_reference = 10;

@@ -117,7 +117,7 @@ void declare_frame_keys(sim::Schema& schema) {
       sim::mapped(accel::structure_kinds(), [&](const std::string_view kind) { return std::string(kind); });
   schema.choice("structure.kind", "octree", kinds,
                 "octree; bsp, a binary tree with the octree's planes; grid of equal cells; bvh, boxes around "
-                "primitives within boxes (docs/bvh.md); or none: every ray tests every primitive");
+                "primitives within boxes (docs/internals/bvh.md); or none: every ray tests every primitive");
   schema.integer("structure.max_objects", 8, {1, 1'000'000}, "primitives",
                  "octree and bsp: a node with more than this many is split");
   schema.integer(

@@ -26,7 +26,7 @@ void declare_record_keys(sim::Schema& schema) {
   schema.boolean(
       "record.critical_path", false,
       "find the chain of computing, transfers, messages, bank accesses and dispatches that sets the end of "
-      "the frame (docs/model.md)");
+      "the frame (docs/internals/model.md)");
 }
 
 RecordConfig read_record(sim::Config& config, bool has_directory) {

@@ -1,5 +1,5 @@
 // The simulated machine against a second implementation of it, in SystemC and TLM-2.0, written from
-// docs/model.md. Other random machines: --gtest_random_seed=N.
+// docs/internals/model.md. Other random machines: --gtest_random_seed=N.
 #include <gtest/gtest.h>
 
 #include <array>

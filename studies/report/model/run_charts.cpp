@@ -45,7 +45,7 @@ void add(ReportData& report, const tables::Table& table, const std::string& note
 
 tables::Table cycles_table(const tables::RunJson& run) {
   tables::Table table("run_cycles", "Where the nodes' time goes",
-                      {tables::text_column("activity", "see docs/model.md, Accounting"),
+                      {tables::text_column("activity", "see docs/internals/model.md, Accounting"),
                        tables::integer_column("ps", "ps", "time of all nodes"),
                        tables::real_column("share", "fraction", "of all nodes' time")});
   double all = 0.0;
@@ -63,7 +63,7 @@ tables::Table cycles_table(const tables::RunJson& run) {
 
 tables::Table energy_table(const tables::RunJson& run) {
   tables::Table table("run_energy", "Where the energy goes",
-                      {tables::text_column("part", "see docs/model.md, Energy"),
+                      {tables::text_column("part", "see docs/internals/model.md, Energy"),
                        tables::integer_column("fj", "fJ", "energy of the frame"),
                        tables::real_column("share", "fraction", "of all energy")});
   const double all = run.count("figures.machine.energy_total");
@@ -77,7 +77,7 @@ tables::Table energy_table(const tables::RunJson& run) {
 
 tables::Table loss_table(const tables::RunJson& run) {
   tables::Table table("run_loss", "Where the lost speed-up went",
-                      {tables::text_column("part", "see docs/model.md, Speed-up"),
+                      {tables::text_column("part", "see docs/internals/model.md, Speed-up"),
                        tables::real_column("lost", "1", "of the ideal speed-up; below 0: won")});
   if (run.count("figures.machine.nodes") <= 1.0) {
     return table;
@@ -185,7 +185,7 @@ tables::Table visits_table(const tables::RunJson& run) {
 
 tables::Table path_table(const tables::RunJson& run) {
   tables::Table table("run_path", "The critical path",
-                      {tables::text_column("what", "what is done, see docs/model.md, The critical path"),
+                      {tables::text_column("what", "what is done, see docs/internals/model.md, The critical path"),
                        tables::integer_column("ps", "ps", "time of it on the path"),
                        tables::real_column("share", "fraction", "of the frame time")});
   const tables::RunJson parts = run.part("machine.critical_path.time_ps");

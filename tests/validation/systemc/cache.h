@@ -1,4 +1,4 @@
-// A private cache as docs/model.md describes it, by the plainest means: a list for each set.
+// A private cache as docs/internals/model.md describes it, by the plainest means: a list for each set.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where records lie, computed from the rules of docs/model.md.
+// Where records lie, computed from the rules of docs/internals/model.md.
 #pragma once
 
 #include <cstdint>

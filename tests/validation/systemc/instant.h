@@ -7,7 +7,7 @@
 //   run in the instant's first delta cycle. A delay of zero takes one more delta cycle and holds back all
 //   turns until it has passed.
 // - A component that is about to use a shared resource asks Turns for leave. Turns gives leave to one
-//   at a time, in the order of docs/model.md: the smallest (turn, node) of those that ask, each time only
+//   at a time, in the order of docs/internals/model.md: the smallest (turn, node) of those that ask, each time only
 //   after all consequences of the last leave within the instant have happened.
 #pragma once
 
