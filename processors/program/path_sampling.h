@@ -137,11 +137,11 @@ struct EmitterSample {
   Vec3<Real> target;  ///< where a ray to it ends: just before the triangle
 };
 
-/// Draws the point. There must be emitters.
+/// Draws the point. There must be emitters. `reach`: as for surface_at().
 template <typename Real>
 EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitters,
-                               const Surface<Real>& surface, const PathNumbers& numbers,
-                               std::uint32_t bounce) {
+                               const Surface<Real>& surface, const PathNumbers& numbers, std::uint32_t bounce,
+                               double reach) {
   using std::sqrt;
   constexpr double one_over_pi = 0.31830988618379067154;
   const Emitters::Choice choice =
@@ -170,8 +170,12 @@ EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitt
   }
   sample.light.direction = way * (Real(1.0) / sqrt(squared));
   const Real weights[3] = {b[0], b[1], b[2]};
-  const Surface<Real> there = surface_at(scene, choice.triangle, weights, sample.light.direction);
+  const Surface<Real> there = surface_at(scene, choice.triangle, weights, sample.light.direction, reach);
   const Real cosine = -dot(there.geometric, sample.light.direction);
+  sample.light.turn = turn_towards(surface, point, there.error, squared);
+  if (!is_more_than_rounding(static_cast<Held<Real>>(cosine), there.tilt_squared, sample.light.turn)) {
+    return sample;  // seen edge on
+  }
   sample.light.radiance = Vec3<Real>(scene.materials[triangle.material].emission) *
                           (cosine * Real(choice.area_over_chance * one_over_pi) / squared);
   sample.light.reaches = largest(sample.light.radiance) > Real(0.0);

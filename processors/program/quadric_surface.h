@@ -40,6 +40,11 @@ Surface<Real> quadric_surface(const accel::QuadricShape& shape, const Vec3<Real>
   surface.error = absolute(surface.point) * Real(gamma_bound<Real>(1)) +
                   (absolute(on_axis) + absolute(radial)) * Real(gamma_bound<Real>(8));
   surface.margin = Real(256.0 * rounding<Real> * shape.reach);
+  // The normal turns by the error of the point over the radius there, and by a few roundings.
+  const auto around = dot(held(radial), held(radial));
+  const Held<Real> off =
+      Held<Real>(2) * largest(held(surface.error)) + static_cast<Held<Real>>(surface.margin);
+  surface.tilt_squared = around > 0 ? off * off / around : Held<Real>(0);
   surface.outside = dot(surface.geometric, direction) < Real(0.0);
   if (!surface.outside) {
     surface.geometric = -surface.geometric;

@@ -5,6 +5,7 @@
 // weights of scenes::Material.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -30,6 +31,12 @@ struct Surface {
   Vec3<Real> color;      ///< the material's colour times the texture's
   bool outside = true;   ///< the viewer is on the side from which the triangle winds counter-clockwise,
                          ///< or outside of the sphere, cylinder or cone
+  /// Square of a bound of the angle by which rounding, of the corners too, may have tilted the geometric
+  /// normal.
+  Held<Real> tilt_squared = 0;
+  /// Where the point is so near an edge of its triangle that rounding hides on which side of the neighbour it
+  /// lies, the way from there into the triangle; else zero.
+  Vec3<Held<Real>> inward;
 };
 
 /// The largest relative error of one rounding: 2^-53, for floats 2^-24.
@@ -62,10 +69,64 @@ inline bool shows_light(const scenes::Material& material) {
   return scatters(material) || (material.highlight > 0.0 && !is_black(material.specular_color));
 }
 
+/// Fills in what rounding may do to a point of a triangle with corners p and weights b: tilt_squared and
+/// inward.
+///
+/// Two triangles that meet at an edge bound a convex body from inside. A ray that begins at the edge is moved
+/// along one triangle's normal, which keeps it off that triangle, but it may begin behind the other one,
+/// whose plane is as near as the error of the point: it would leave the body, or be hidden from a light
+/// inside. So the ray begins `off` from every edge of its triangle, in the triangle's plane: 16 times the
+/// errors of the point and of the kernel (2^-48 of the size of the scene, whose larger triangles may be the
+/// neighbours). Then it is on the inner side of neighbours that meet the triangle at more than some 8
+/// degrees.
+///
+/// The arithmetic is not counted among the program's operations: it matters to one ray in thousands.
+template <typename Real>
+void bound_rounding(Surface<Real>& surface, const Vec3<Real> (&p)[3], const Real (&b)[3], double reach) {
+  using Number = Held<Real>;
+  using Vec = Vec3<Number>;
+  const Vec corners[3] = {held(p[0]), held(p[1]), held(p[2])};
+  const Vec first = corners[1] - corners[0];
+  const Vec second = corners[2] - corners[0];
+  const Vec third = second - first;
+  const Vec across = cross(first, second);
+  const Number area_squared = dot(across, across);
+  const Number longest_squared = largest(Vec(dot(first, first), dot(second, second), dot(third, third)));
+  if (!in_range(area_squared) || !in_range(longest_squared)) [[unlikely]] {
+    return;  // sizes whose squares leave the format: nothing is known
+  }
+  // The least height of the triangle is the square root of area_squared / longest_squared. Each corner is off
+  // by a rounding, of which the height makes an angle; the edges and their product add a few of the longest
+  // edge.
+  const Vec sizes = absolute(corners[0]) + absolute(corners[1]) + absolute(corners[2]);
+  constexpr auto unit = static_cast<Number>(rounding<Real>);
+  const Number moved =
+      Number(4) * unit * (largest(sizes) + Number(4) * largest(absolute(first) + absolute(second)));
+  surface.tilt_squared = moved * moved * longest_squared / area_squared;
+
+  const Number off =
+      Number(16) * (Number(2) * largest(held(surface.error)) + static_cast<Number>(surface.margin) +
+                    Number(32) * unit * static_cast<Number>(reach));
+  const Number weights[3] = {static_cast<Number>(b[0]), static_cast<Number>(b[1]), static_cast<Number>(b[2])};
+  const Number least = std::min({weights[0], weights[1], weights[2]});
+  if (least * least * area_squared >= off * off * longest_squared) [[likely]] {
+    return;
+  }
+  // Each weight is the distance from an edge over the height on it. In triangles that are smaller than that
+  // the ray begins near the middle.
+  const Number floor = std::min(Number(0.25), off * std::sqrt(longest_squared / area_squared));
+  const Number raised[3] = {std::max(weights[0], floor), std::max(weights[1], floor),
+                            std::max(weights[2], floor)};
+  const Number sum = raised[0] + raised[1] + raised[2];
+  surface.inward = first * (raised[1] / sum - weights[1]) + second * (raised[2] / sum - weights[2]);
+}
+
 /// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
+/// `reach`: the largest side of the scene's box, whose rounding keeps rays that leave off the edges
+/// (bound_rounding).
 template <typename Real>
 Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3],
-                         const Vec3<Real>& direction) {
+                         const Vec3<Real>& direction, double reach) {
   const scenes::Triangle& t = scene.triangles[triangle];
   const Vec3<Real> p0(scene.positions[t.vertex[0]]);
   const Vec3<Real> p1(scene.positions[t.vertex[1]]);
@@ -90,6 +151,7 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
     surface.geometric = -surface.geometric;
   }
   surface.normal = surface.geometric;
+  bound_rounding(surface, {p0, p1, p2}, b, reach);
   if (!scene.normals.empty()) {
     const auto corner = [&](int k) {
       const glm::dvec3& n = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
@@ -137,7 +199,8 @@ Format next_toward(Format value, Format toward) {
 
 /// Where a ray that leaves the surface into `direction` begins: the point moved along the triangle's normal
 /// out of its error box and the kernel's margin, each coordinate rounded outwards (Physically Based
-/// Rendering, 4th ed., section 6.8.6). A fixed epsilon fails for very small and for very large scenes.
+/// Rendering, 4th ed., section 6.8.6), and at an edge into the triangle (bound_rounding). A fixed epsilon
+/// fails for very small and for very large scenes.
 template <typename Real>
 Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
   Real distance = dot(absolute(surface.geometric), surface.error) + surface.margin;
@@ -147,10 +210,11 @@ Vec3<Real> leave(const Surface<Real>& surface, const Vec3<Real>& direction) {
   const Vec3<Real> offset = surface.geometric * distance;
   const Vec3<Real> moved = surface.point + offset;
   // The rounding outwards is integer work on a register.
-  const auto outward = [](const Real& value, const Real& toward) {
-    return Real(next_toward(static_cast<Held<Real>>(value), static_cast<Held<Real>>(toward)));
+  const auto outward = [](const Real& value, const Real& toward, Held<Real> inward) {
+    return Real(next_toward(static_cast<Held<Real>>(value) + inward, static_cast<Held<Real>>(toward)));
   };
-  return {outward(moved.x, offset.x), outward(moved.y, offset.y), outward(moved.z, offset.z)};
+  return {outward(moved.x, offset.x, surface.inward.x), outward(moved.y, offset.y, surface.inward.y),
+          outward(moved.z, offset.z, surface.inward.z)};
 }
 
 /// A light as one surface point sees it.
@@ -160,6 +224,7 @@ struct LightSample {
   Vec3<Real> radiance;       ///< colour with all its fall-offs; zero where the light does not reach
   bool reaches = false;      ///< the radiance is not zero
   bool at_infinity = false;  ///< directional
+  Held<Real> turn = 0;       ///< bound of the angle by which rounding may have turned the direction
 };
 
 /// Whether a light at this squared distance can light a point: not where it stands, or so near that its
@@ -170,24 +235,39 @@ bool lights_at(const Real& squared) {
   return squared > Real(nearest) && std::isfinite(static_cast<Held<Real>>(squared));
 }
 
+/// Bound of the angle by which rounding may have turned the direction from a surface to a place at this
+/// squared distance, whose coordinates are off by `error` and by a rounding each. Not counted among the
+/// program's operations.
+template <typename Real>
+Held<Real> turn_towards(const Surface<Real>& surface, const Vec3<Real>& place, const Vec3<Real>& error,
+                        const Real& squared) {
+  using Number = Held<Real>;
+  const Number off = largest(held(surface.error)) + largest(held(error)) +
+                     static_cast<Number>(4.0 * rounding<Real>) * largest(absolute(held(place)));
+  return Number(2) * off / std::sqrt(static_cast<Number>(squared));
+}
+
 /// glTF's KHR_lights_punctual: spot cone, range window. inverse_square off: no inverse-square fall-off.
 template <typename Real>
-LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) {
+LightSample<Real> light_at(const scenes::Light& light, const Surface<Real>& surface) {
   using std::sqrt;
   LightSample<Real> sample;
   sample.radiance = Vec3<Real>(light.color);
   if (light.kind == scenes::LightKind::directional) {
     sample.direction = -Vec3<Real>(light.direction);
     sample.at_infinity = true;
+    sample.turn = Held<Real>(8 * rounding<Real>);
     sample.reaches = largest(sample.radiance) > Real(0.0);
     return sample;
   }
-  const Vec3<Real> to_light = Vec3<Real>(light.position) - point;
+  const Vec3<Real> position(light.position);
+  const Vec3<Real> to_light = position - surface.point;
   const Real squared = dot(to_light, to_light);
   if (!lights_at(squared)) {
     return sample;
   }
   sample.direction = to_light * (Real(1.0) / sqrt(squared));
+  sample.turn = turn_towards(surface, position, Vec3<Real>(), squared);
   Real strength(1.0);
   if (light.inverse_square) {
     strength = strength / squared;
@@ -209,11 +289,28 @@ LightSample<Real> light_at(const scenes::Light& light, const Vec3<Real>& point) 
   return sample;
 }
 
-/// True when light from `direction` falls on the viewer's side. Both normals must face it; otherwise light
-/// would reach points that the flat triangle hides from it.
+/// Whether a cosine between a surface and a direction is more than rounding makes of 0, when the angle may be
+/// off by the root of `tilt_squared` and by `turn`. Not counted among the program's operations.
+template <typename Number>
+bool is_more_than_rounding(Number cosine, Number tilt_squared, Number turn) {
+  constexpr Number clear = 0x1p-6;  // larger angles of rounding have no meaning
+  return cosine > clear || cosine * cosine > Number(2) * (tilt_squared + turn * turn);
+}
+
+/// True when the light falls on the viewer's side. Both normals must face it; otherwise light would reach
+/// points that the flat triangle hides from it. A light whose cosine rounding could have made of 0 lies in
+/// the plane: it brings nothing, and whether a ray asks for it must not depend on where the scene's origin
+/// is.
 template <typename Real>
-bool faces(const Surface<Real>& surface, const Vec3<Real>& direction) {
-  return dot(surface.normal, direction) > Real(0.0) && dot(surface.geometric, direction) > Real(0.0);
+bool faces(const Surface<Real>& surface, const LightSample<Real>& light) {
+  const Real shading = dot(surface.normal, light.direction);
+  if (!(shading > Real(0.0))) {
+    return false;
+  }
+  const Real flat = dot(surface.geometric, light.direction);
+  return flat > Real(0.0) &&
+         is_more_than_rounding(static_cast<Held<Real>>(flat), surface.tilt_squared, light.turn) &&
+         is_more_than_rounding(static_cast<Held<Real>>(shading), surface.tilt_squared, light.turn);
 }
 
 /// Lambert's diffuse term, without the light's radiance.

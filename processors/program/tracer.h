@@ -69,6 +69,7 @@ class Tracer {
         options_(options),
         recorder_(recorder),
         share_(1.0 / options.samples),
+        reach_(largest_side(structure.triangles().bounds())),
         points_(options.samples, options.seed) {}
 
   /// The colour of pixel (x, y): of the ray through its centre, or the mean of its samples.
@@ -99,6 +100,10 @@ class Tracer {
   /// With Integrator::path, the number of the first ray of a path, the eye ray being 1, before which the path
   /// may end by chance.
   static constexpr std::uint32_t first_ray_of_roulette = 4;
+
+  static double largest_side(const scenes::Bounds& box) {
+    return box.empty() ? 0.0 : largest(Vec3<double>(box.hi) - Vec3<double>(box.lo));
+  }
 
   struct Pending {
     Vec origin;
@@ -199,7 +204,7 @@ class Tracer {
     const Real b[3] = {Real(hit.u), Real(hit.v), Real(hit.w)};
     const bool triangle = hit.primitive < scene_.triangles.size();
     Surface<Real> surface =
-        triangle ? surface_at(scene_, hit.primitive, b, pending.direction)
+        triangle ? surface_at(scene_, hit.primitive, b, pending.direction, reach_)
                  : quadric_surface(structure_.triangles().quadric(hit.primitive),
                                    pending.origin + pending.direction * Real(hit.t), pending.direction);
     surface.color = Vec(material.color);
@@ -255,8 +260,8 @@ class Tracer {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
       recorder_.phase(Phase::shade, pending.kind);
       const scenes::Light& light = scene_.lights[i];
-      const LightSample<Real> sample = light_at(light, surface.point);
-      if (!sample.reaches || !faces(surface, sample.direction)) {
+      const LightSample<Real> sample = light_at(light, surface);
+      if (!sample.reaches || !faces(surface, sample)) {
         continue;
       }
       if (options_.shadows && in_shadow(surface, sample, Vec(light.position), pending.bounce + 1)) {
@@ -276,8 +281,9 @@ class Tracer {
   /// Next-event estimation: the light of one point of one emissive triangle.
   void ask_emitter(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     recorder_.phase(Phase::shade, pending.kind);
-    const EmitterSample<Real> sample = emitter_at<Real>(scene_, emitters_, surface, numbers_, pending.bounce);
-    if (!sample.light.reaches || !faces(surface, sample.light.direction) ||
+    const EmitterSample<Real> sample =
+        emitter_at<Real>(scene_, emitters_, surface, numbers_, pending.bounce, reach_);
+    if (!sample.light.reaches || !faces(surface, sample.light) ||
         (options_.shadows && in_shadow(surface, sample.light, sample.target, pending.bounce + 1))) {
       return;
     }
@@ -413,6 +419,7 @@ class Tracer {
   RenderOptions options_;
   Recorder& recorder_;
   double share_;  ///< weight of a sample in its pixel
+  double reach_;  ///< largest side of the scene's box
   SamplePoints points_;
   PathNumbers numbers_{0, 0, 0, 0};  ///< of the sample, with Integrator::path
 

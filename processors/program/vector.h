@@ -65,6 +65,12 @@ Vec3<Real> absolute(const Vec3<Real>& a) {
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
 
+/// The vector as plain numbers: what is worked out with them is not counted among the program's operations.
+template <typename Real>
+Vec3<Held<Real>> held(const Vec3<Real>& a) {
+  return {static_cast<Held<Real>>(a.x), static_cast<Held<Real>>(a.y), static_cast<Held<Real>>(a.z)};
+}
+
 /// Whether the square root of a sum of squares is a vector's length: neither overflowed, nor so small that
 /// squares in it lost digits. The check is not counted among the program's operations: only scenes of extreme
 /// sizes need it.

@@ -29,7 +29,7 @@ scenes::Scene scene_of(const PlacedSphere& mesh) {
 
 processors::program::Surface<double> surface_of(const scenes::Scene& scene, const Ray& eye, const Hit& hit) {
   const double weights[3] = {hit.u, hit.v, hit.w};
-  return processors::program::surface_at(scene, hit.primitive, weights, Vec(eye.direction));
+  return processors::program::surface_at(scene, hit.primitive, weights, Vec(eye.direction), 0.0);
 }
 
 Ray leaving(const processors::program::Surface<double>& surface, const Vec& direction) {

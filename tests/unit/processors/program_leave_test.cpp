@@ -70,7 +70,7 @@ TEST(LeavingAPlane, NoRayMeetsTheBoardItLeft) {
         const accel::Hit hit = built.structure->closest({eye, d});
         ASSERT_TRUE(hit.found());
         const double weights[3] = {hit.u, hit.v, hit.w};
-        const Surface<double> surface = surface_at(built.scene, hit.primitive, weights, Vec3<double>(d));
+        const Surface<double> surface = surface_at(built.scene, hit.primitive, weights, Vec3<double>(d), 8.0);
         glm::dvec3 out(unit(random), unit(random), unit(random));
         const Vec3<double> from = leave(surface, Vec3<double>(out));
         ASSERT_FALSE(built.structure->occluded({{from.x, from.y, from.z}, out}))
@@ -101,7 +101,7 @@ TEST(Leaving, InFloatsHardlyAnyRayMeetsTheSurfaceThatItLeaves) {
       ASSERT_TRUE(hit.found());
       const float weights[3] = {static_cast<float>(hit.u), static_cast<float>(hit.v),
                                 static_cast<float>(hit.w)};
-      const Surface<float> surface = surface_at(built.scene, hit.primitive, weights, Vec3<float>(d));
+      const Surface<float> surface = surface_at(built.scene, hit.primitive, weights, Vec3<float>(d), 2.0);
       Vec3<float> out(direction());
       const float cosine = dot(out, surface.geometric);
       if (std::abs(cosine) < 0.01F) {

@@ -1,0 +1,138 @@
+// Closed convex surfaces seen from inside: no ray may leave them, and nothing may stand between a point of
+// theirs and a light inside. Rays that begin on an edge or in a corner, where the neighbour is as near as
+// rounding can tell, are the hard ones; all structures treat them alike, so comparing structures does not
+// find them.
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include "processors/program/render.h"
+#include "program_scenes.h"
+#include "sim/error.h"
+
+namespace marti::processors {
+
+using namespace program;
+
+namespace {
+
+using test::Built;
+
+/// The inside of a body around `center`, seen from the middle with a point light there. All walls scatter
+/// and, a little, mirror.
+scenes::Scene inside_of(const glm::dvec3& center) {
+  scenes::Scene scene;
+  scene.background = {0.0, 0.0, 1.0};
+  scene.camera.eye = center;
+  scene.camera.at = center + glm::dvec3(0.0, 0.0, -1.0);
+  scene.camera.up = {0.0, 1.0, 0.0};
+  scene.camera.vertical_fov = 2.0;
+  scenes::Material& walls = scene.materials.emplace_back();
+  walls.color = glm::dvec3(0.9);
+  walls.reflection = 0.2;
+  scenes::Light& light = scene.lights.emplace_back();
+  light.position = center;
+  return scene;
+}
+
+/// A box whose faces are divided into `parts` x `parts` quadrilaterals.
+void add_box(scenes::Scene& scene, const glm::dvec3& center, const glm::dvec3& half, int parts) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto corner = [&](int u, int v) {
+        glm::dvec3 p;
+        p[axis] = side * half[axis];
+        p[(axis + 1) % 3] = half[(axis + 1) % 3] * (2.0 * u / parts - 1.0);
+        p[(axis + 2) % 3] = half[(axis + 2) % 3] * (2.0 * v / parts - 1.0);
+        return center + p;
+      };
+      for (int u = 0; u < parts; ++u) {
+        for (int v = 0; v < parts; ++v) {
+          test::add_quad(scene, corner(u, v), corner(u + 1, v), corner(u + 1, v + 1), corner(u, v + 1), 0);
+        }
+      }
+    }
+  }
+}
+
+/// A sphere of triangles between circles of latitude.
+void add_sphere(scenes::Scene& scene, const glm::dvec3& center, double radius, int parts) {
+  const auto point = [&](int ring, int step) {
+    const double polar = std::numbers::pi * ring / parts;
+    const double around = 2.0 * std::numbers::pi * (step % (2 * parts)) / (2 * parts);
+    const double across = ring == 0 || ring == parts ? 0.0 : std::sin(polar);
+    return center +
+           radius * glm::dvec3(across * std::cos(around), across * std::sin(around), std::cos(polar));
+  };
+  for (int ring = 0; ring < parts; ++ring) {
+    for (int step = 0; step < 2 * parts; ++step) {
+      const auto first = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.insert(scene.positions.end(), {point(ring, step), point(ring + 1, step),
+                                                     point(ring + 1, step + 1), point(ring, step + 1)});
+      if (ring > 0) {
+        scene.triangles.push_back({{first, first + 1, first + 3}, 0, 0});
+      }
+      if (ring + 1 < parts) {
+        scene.triangles.push_back({{first + 1, first + 2, first + 3}, 0, 0});
+      }
+    }
+  }
+}
+
+struct Lost {
+  std::uint64_t rays = 0;     ///< that are no shadow rays
+  std::uint64_t escaped = 0;  ///< of these
+  std::uint64_t shadows = 0;
+  std::uint64_t blocked = 0;  ///< of these
+};
+
+Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats) {
+  RenderOptions options{.width = 48, .height = 48, .max_depth = 12};
+  options.integrator = integrator;
+  options.samples = integrator == Integrator::path ? 3 : 1;
+  options.floats = floats;
+  const Frame frame = Built(scene, "bvh").render(options);
+  Lost lost;
+  for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
+    const bool shadow = kind == static_cast<std::size_t>(RayKind::shadow);
+    (shadow ? lost.shadows : lost.rays) += frame.rays.traced[kind];
+    (shadow ? lost.blocked : lost.escaped) +=
+        shadow ? frame.rays.hit[kind] : frame.rays.traced[kind] - frame.rays.hit[kind];
+  }
+  return lost;
+}
+
+// The camera is not turned, so rays of its diagonals and axes meet edges and corners exactly.
+TEST(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
+  for (const double far : {0.0, 1000.0, 1e6}) {
+    const glm::dvec3 center(far, far, far);
+    for (const std::string body : {"cube", "divided cube", "flat box", "sphere"}) {
+      scenes::Scene scene = inside_of(center);
+      if (body == "sphere") {
+        add_sphere(scene, center, 2.0, 12);
+      } else {
+        add_box(scene, center, body == "flat box" ? glm::dvec3(3.0, 0.7, 1.3) : glm::dvec3(1.0),
+                body == "cube" ? 1 : 5);
+      }
+      for (const Integrator integrator : {Integrator::whitted, Integrator::path}) {
+        for (const bool floats : {false, true}) {
+          if (floats && far > 1000.0) {
+            continue;  // a float's spacing there is a sixteenth of the body
+          }
+          const Lost lost = lost_in(scene, integrator, floats);
+          EXPECT_GT(lost.shadows, 1000U);
+          EXPECT_EQ(lost.escaped, 0U)
+              << body << " at " << far << " of " << lost.rays << (floats ? ", floats" : "");
+          EXPECT_EQ(lost.blocked, 0U)
+              << body << " at " << far << " of " << lost.shadows << (floats ? ", floats" : "");
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace marti::processors
