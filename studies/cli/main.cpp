@@ -60,7 +60,6 @@
 #include "studies/show/summary.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
-#include "studies/sweep/ranks/ranks.h"
 #include "studies/tables/page_file.h"
 #include "studies/tables/result_directory.h"
 #include "studies/verify/verify_plan.h"
@@ -293,6 +292,12 @@ void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
       ->add_option("--budget,--within", arguments.budget,
                    "the cost that the best machine may have, by [prices]; --within is its old name")
       ->type_name("COST");
+  sweep
+      ->add_option(
+          "--share", arguments.share,
+          "times only this share of the machines: 3/8 is the third of eight; the last one, or the command "
+          "without --share, merges them")
+      ->type_name("N/OF");
   sweep->add_flag("--plan", arguments.plan_only, "only say what would be run");
   sweep->add_flag("--quiet", arguments.quiet, "no progress");
   sweep->add_flag("--json", arguments.json, "print the points, or the best ones, as JSON");
@@ -568,11 +573,6 @@ int run_program(int argc, char** argv) {
   // Writing to a pipe without a reader is then an error of writing, which print() knows.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is then an error of writing, like a full disk
-  // A rank that ends also ends the other ranks of its job.
-  const auto end = [](int status) {
-    sweep::end_all_ranks(status);
-    return status;
-  };
   try {
     host::end_cleanly_on_signals();
     host::limit_threads_to_available();
@@ -580,10 +580,10 @@ int run_program(int argc, char** argv) {
   } catch (const sim::UserError& error) {
     // A message may quote control characters, which must not reach the terminal.
     std::fprintf(stderr, "marti: %s\n", sim::shown(error.what(), sim::all_shown).c_str());
-    return end(wrong_input);
+    return wrong_input;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "marti: not enough memory for this scene or machine\n");
-    return end(wrong_input);
+    return wrong_input;
   } catch (const std::system_error& error) {
     // std::thread throws this when the system allows no more threads.
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
@@ -591,10 +591,10 @@ int run_program(int argc, char** argv) {
                  no_thread ? "marti: the system lets this process have no more threads: %s\n"
                            : "marti: internal error: %s\n",
                  error.what());
-    return end(no_thread ? wrong_input : our_fault);
+    return no_thread ? wrong_input : our_fault;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "marti: internal error: %s\n", error.what());
-    return end(our_fault);
+    return our_fault;
   }
 }
 

@@ -9,14 +9,12 @@
 #include <utility>
 
 #include "sim/error.h"
-#include "sim/files.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/progress/progress_line.h"
 #include "studies/sweep/plan/sweep_keys.h"
-#include "studies/sweep/ranks/launch.h"
-#include "studies/sweep/ranks/ranks.h"
+#include "studies/sweep/share.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/sweep.h"
 #include "studies/tables/json_table.h"
@@ -34,32 +32,23 @@ std::string said(const sweep::SweepReport& report) {
                      tables::counted(report.traced, "frame"), tables::duration_text(report.seconds));
 }
 
+// Of a share that was not merged by this process.
+std::string said_of_share(const sweep::SweepReport& report) {
+  if (report.merged) {
+    return "another process has merged all shares\n";
+  }
+  return (report.store.empty() ? "" : "wrote         " + report.store.string() + "\n") +
+         "other shares are not done: the last one merges them, or the same command without --share\n";
+}
+
 sweep::SweepOptions options_of(const SweepArguments& arguments) {
   sweep::SweepOptions options;
   options.directory = arguments.directory;
   options.threads = arguments.threads;
   options.terminal = progress::errors_go_to_a_terminal();
   options.quiet = arguments.quiet;
+  options.share = arguments.share.empty() ? sweep::share_of_launcher() : sweep::share_named(arguments.share);
   return options;
-}
-
-// The ranks on one computer share its memory; a limit that the user gives applies to each rank.
-sim::MemoryBudget memory_of(const sim::Config& config, const sweep::Ranks* ranks) {
-  return keys::read_memory(config, ranks == nullptr ? 1 : ranks->on_this_computer());
-}
-
-// Runs a rank other than 0. Its computer may lack the configuration file: rank 0 sends the text. Errors in
-// the arguments are reported by rank 0 alone.
-void join(sweep::Ranks& ranks, const SweepArguments& arguments) {
-  if (arguments.plan_only) {
-    return;
-  }
-  sweep::join_sweep(ranks, options_of(arguments), [&](const std::string& text) {
-    sim::Config config =
-        sim::Config::from_text(sweep::sweep_schema(), text, arguments.config, arguments.assignments);
-    sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
-    return sweep::JoinedSweep{std::move(plan), memory_of(config, &ranks)};
-  });
 }
 
 // A machine is not better for a frame of less work.
@@ -77,32 +66,17 @@ std::string note_of_frames(const sweep::SweepPlan& plan) {
 }  // namespace
 
 void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&)) {
-  std::optional<sweep::Ranks> ranks;
-  if (sweep::launched_processes() > 1) {
-    ranks.emplace();
-    if (ranks->rank() != 0) {
-      join(*ranks, arguments);
-      return;
-    }
-  }
   keys::require_config_file(arguments.config);
-  sweep::SweepOptions options = options_of(arguments);
-  options.ranks = ranks ? &*ranks : nullptr;
-  if (ranks) {
-    options.configuration = sim::read_file(arguments.config, sim::longest_config);
-  }
-  sim::Config config =
-      ranks ? sim::Config::from_text(sweep::sweep_schema(), options.configuration, arguments.config,
-                                     arguments.assignments)
-            : sim::Config::from_file(sweep::sweep_schema(), arguments.config, arguments.assignments);
+  const sweep::SweepOptions options = options_of(arguments);
+  sim::Config config = sim::Config::from_file(sweep::sweep_schema(), arguments.config, arguments.assignments);
   if (arguments.budget && (!std::isfinite(*arguments.budget) || *arguments.budget < 0.0)) {
     throw sim::UserError("--budget: must be a cost of at least 0");
   }
   if (arguments.budget && arguments.best.empty()) {
     throw sim::UserError("--budget: is for the machines of --best METRIC, which is missing");
   }
-  if (arguments.plan_only && (arguments.json || !arguments.best.empty())) {
-    throw sim::UserError("--plan: prints the plan, as text; leave out --json and --best");
+  if (arguments.plan_only && (arguments.json || !arguments.best.empty() || !arguments.share.empty())) {
+    throw sim::UserError("--plan: prints the plan, as text; leave out --json, --best and --share");
   }
   if (!arguments.best.empty()) {
     if (figures::figure_named(arguments.best).better == figures::Better::neither) {
@@ -114,18 +88,27 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   const std::optional<keys::Prices> prices = keys::read_given_prices(config);
   const sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
   if (arguments.plan_only) {
-    print(sweep::describe(plan, sweep::look_ahead(plan, options)));
+    if (!options.share || options.share->number == 1) {
+      print(sweep::describe(plan, sweep::look_ahead(plan, options)));
+    }
     return;
   }
   if (arguments.directory.empty()) {
     throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
   }
   const sweep::SweepReport report =
-      sweep::run_sweep(plan, options, memory_of(config, options.ranks), prices, [&](const std::string& text) {
-        if (!arguments.json) {
-          print(text);
-        }
-      });
+      sweep::run_sweep(plan, options, keys::read_memory(config, sweep::processes_beside()), prices,
+                       [&](const std::string& text) {
+                         if (!arguments.json) {
+                           print(text);
+                         }
+                       });
+  if (report.reader == nullptr) {
+    if (!arguments.json) {
+      print(said(report) + said_of_share(report));
+    }
+    return;
+  }
   if (arguments.json) {
     print(tables::json_of(arguments.best.empty()
                               ? report.limited->table

@@ -13,6 +13,7 @@ struct SweepArguments {
   std::vector<std::string> axes;  ///< as in studies/sweep/plan/axis_argument.h
   std::string directory;
   unsigned threads = 0;
+  std::string share;  ///< as "3/8"; empty: what the launcher says
   bool plan_only = false;
   bool quiet = false;
   bool json = false;

@@ -22,7 +22,7 @@ namespace marti::studies::host {
 
 namespace {
 
-// Threads outside the pools: one waits for signals, one talks to other ranks.
+// Threads outside the pools: the main one, and one that waits for signals.
 constexpr std::size_t others = 2;
 
 // How many of `wanted` threads can exist at the same time, found by starting them.

@@ -1,12 +1,13 @@
 #include "studies/sweep/sweep.h"
 
-#include <tbb/task_arena.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -17,13 +18,15 @@
 #include "sim/mapped.h"
 #include "studies/host/signals_held.h"
 #include "studies/show/output.h"
-#include "studies/sweep/ranks/rank_sweep.h"
+#include "studies/sweep/store/store_parts.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/sweep/sweep_outlook.h"
 #include "studies/sweep/work/coordinator.h"
 #include "studies/sweep/work/sweep_worker.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/result_directory.h"
+#include "studies/tables/sqlite_connection.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::sweep {
 
@@ -38,14 +41,7 @@ void refuse_large_machines(const SweepPlan& plan, const sim::MemoryBudget& memor
 }
 
 unsigned threads_of(const SweepOptions& options) {
-  return options.threads != 0       ? options.threads
-         : options.ranks != nullptr ? threads_of_rank(*options.ranks)
-                                    : static_cast<unsigned>(tbb::this_task_arena::max_concurrency());
-}
-
-template <class Part>
-std::vector<bool> found_in(const std::vector<std::string>& keys, const std::vector<Part>& parts) {
-  return sim::mapped(parts, [&](const Part& part) { return std::ranges::binary_search(keys, part.key); });
+  return options.threads != 0 ? options.threads : threads_beside();
 }
 
 // Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,
@@ -64,68 +60,35 @@ void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
   }
 }
 
-}  // namespace
-
-SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
-  std::vector<bool> machines(plan.machines.size());
-  std::vector<bool> frames(plan.frames.size());
-  const std::filesystem::path file = options.directory / tables::database_name;
-  if (!options.directory.empty() && is_begun(file)) {
-    const SweepReader reader(file);
-    machines = found_in(reader.machines_done(), plan.machines);
-    frames = found_in(reader.frames_done(), plan.frames);
-  }
-  return outlook_of(plan, machines, frames, threads_of(options));
-}
-
-SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-                      const std::optional<keys::Prices>& prices,
-                      const std::function<void(const std::string&)>& announce) {
-  refuse_large_machines(plan, limit);
-  const sim::MadeDirectory made = show::prepare_output(options.directory);
-  SweepReport report;
-  report.store = options.directory / tables::database_name;
-  report.points = options.directory / "points.csv";
-  sim::refuse_input(report.points);
-  tables::refuse_other_results(options.directory, tables::database_name);
-  // Nobody else may write the store from its check until the tables that follow from it are written.
-  std::optional<StoreLock> lock(std::in_place, report.store);
-  const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
+// Times what the store in `report.store` lacks of the plan; `lock` is the store's, and ends if a signal
+// comes. Takes `parts` into the store first, and says what `say` makes of what is left then.
+void complete(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
+              std::optional<StoreLock>& lock, const std::vector<std::filesystem::path>& parts,
+              const std::function<void(const SweepOutlook&)>& say, SweepReport& report) {
   const bool is_new = !is_begun(report.store);
+  const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
+  std::optional<SweepStore> store;
   SweepOutlook outlook;
   {
     const host::AtSignal unlocked(unlock);
-    outlook = look_ahead(plan, options);  // checks a store that was begun
-    announce(describe(plan, outlook));
+    store.emplace(report.store, plan, &*lock);
+    for (const std::filesystem::path& part : parts) {
+      store->merge(part);
+    }
+    outlook = outlook_of(plan, store->done(), store->frames_done(), threads_of(options));
+    say(outlook);
   }
-  const unsigned threads = threads_of(options);
-  const unsigned all_threads =
-      threads * (options.ranks != nullptr ? static_cast<unsigned>(options.ranks->size()) : 1U);
-  SweepStore store(report.store, plan, &*lock);
-  const Schedule left(plan, store.done(), store.frames_done());
-  report.timed = left.machines_left();
-  report.traced = left.frames_left();
-
-  const auto begin = std::chrono::steady_clock::now();
+  const Schedule left(plan, store->done(), store->frames_done());
+  report.timed += left.machines_left();
+  report.traced += left.frames_left();
   SweepSite site(plan, limit);
-  Progress progress({options.terminal, options.quiet, stderr, all_threads});
-  std::optional<RankServer> server;
-  if (options.ranks != nullptr) {
-    server.emplace(*options.ranks, plan);
-  }
+  Progress progress({options.terminal, options.quiet, stderr, threads_of(options)});
   Coordinator coordinator(
-      plan, store, progress,
-      [&](std::size_t frame) {
-        site.drop(frame);
-        if (server) {
-          server->over(frame);
-        }
-      },
-      std::move(outlook.costs));
+      plan, *store, progress, [&](std::size_t frame) { site.drop(frame); }, std::move(outlook.costs));
   const auto clean_up = [&] {
     progress.end();
     if (is_new) {
-      remove_if_empty(store, report.store);
+      remove_if_empty(*store, report.store);
     }
   };
   try {
@@ -136,13 +99,10 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
     });
-    if (server) {
-      server->work(site, coordinator, options.configuration, threads);
-    } else {
-      // More workers than tasks would only wait.
-      const std::size_t tasks = std::max<std::size_t>(1, report.timed + report.traced);
-      work_together(site, coordinator, static_cast<unsigned>(std::min<std::size_t>(threads, tasks)));
-    }
+    // More workers than tasks would only wait.
+    const std::size_t tasks = std::max<std::size_t>(1, left.machines_left() + left.frames_left());
+    work_together(site, coordinator,
+                  static_cast<unsigned>(std::min<std::size_t>(threads_of(options), tasks)));
   } catch (const sim::UserError& error) {
     clean_up();
     throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
@@ -152,24 +112,123 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
     throw;
   }
   progress.end();
-  store.close();
-  const host::AtSignal unlocked(unlock);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  store->close();
+}
+
+// Locks the store if it and its parts have every machine of the plan between them. Of several
+// processes that end at the same time, one after the other looks, so the last finds all.
+bool lock_if_complete(const SweepPlan& plan, const std::filesystem::path& store,
+                      std::optional<StoreLock>& lock) {
+  constexpr std::chrono::seconds patience(30);  // for others that look, or merge
+  for (const auto begin = std::chrono::steady_clock::now(); !lock;) {
+    try {
+      lock.emplace(store);
+    } catch (const sim::UserError&) {
+      if (std::chrono::steady_clock::now() - begin > patience) {
+        return false;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  bool complete = false;
+  try {
+    DoneKeys done;
+    done.add(store);
+    for (const std::filesystem::path& part : parts_in(store.parent_path())) {
+      // A part that is being written, perhaps on another computer, is locked and has a log; it is not read.
+      const StoreLock locked(part);
+      if (!tables::has_log_or_journal(part)) {
+        done.add(part);
+      }
+    }
+    complete = std::ranges::all_of(
+        plan.machines, [&](const SweepMachine& machine) { return done.machines.contains(machine.key); });
+  } catch (const sim::UserError&) {
+    // A part is being written, or is damaged: `marti sweep` without a share says so.
+  }
+  if (!complete) {
+    lock.reset();
+  }
+  return complete;
+}
+
+}  // namespace
+
+SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
+  DoneKeys done;
+  if (!options.directory.empty()) {
+    done.add(options.directory / tables::database_name);
+    for (const std::filesystem::path& part : parts_in(options.directory)) {
+      if (!tables::has_log_or_journal(part)) {  // which it has while it is being written
+        done.add(part);
+      }
+    }
+  }
+  return outlook_of(
+      plan,
+      sim::mapped(plan.machines,
+                  [&](const SweepMachine& machine) { return done.machines.contains(machine.key); }),
+      sim::mapped(plan.frames, [&](const SweepFrame& frame) { return done.frames.contains(frame.key); }),
+      threads_of(options));
+}
+
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
+                      const std::optional<keys::Prices>& prices,
+                      const std::function<void(const std::string&)>& announce) {
+  refuse_large_machines(plan, limit);
+  const sim::MadeDirectory made = show::prepare_output(options.directory);
+  const std::filesystem::path whole = options.directory / tables::database_name;
+  SweepReport report;
+  report.points = options.directory / "points.csv";
+  sim::refuse_input(report.points);
+  tables::refuse_other_results(options.directory, tables::database_name);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto took = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  // Nobody else may write the store from its check until the tables that follow from it are written.
+  std::optional<StoreLock> lock;
+  if (options.share) {
+    DoneKeys done;
+    done.add(whole);
+    const SweepPlan part = part_of(plan, *options.share, [&](const SweepMachine& machine) {
+      return done.machines.contains(machine.key);
+    });
+    announce(fmt::format("share         {}: {} on {}\n", options.share->text(),
+                         tables::counted(part.machines.size(), "machine"),
+                         tables::counted(part.frames.size(), "frame")));
+    if (!part.machines.empty()) {
+      report.store = part_file(options.directory, options.share->number, options.share->of);
+      std::optional<StoreLock> part_lock(std::in_place, report.store);
+      complete(
+          part, options, limit, part_lock, {}, [](const SweepOutlook&) {}, report);
+    }
+    report.seconds = took();
+    if (!lock_if_complete(plan, whole, lock)) {
+      return report;
+    }
+    if (!report.store.empty() && !tables::is_there(report.store)) {
+      report.merged = true;  // by a process that ended at the same time
+      return report;
+    }
+  } else {
+    lock.emplace(whole);
+  }
+  report.store = whole;
+  complete(
+      plan, options, limit, lock, parts_in(options.directory),
+      [&](const SweepOutlook& outlook) {
+        if (!options.share) {
+          announce(describe(plan, outlook));
+        }
+      },
+      report);
+  const host::AtSignal unlocked([&lock](int /*signal*/) { lock.reset(); });
+  report.seconds = took();
   report.reader = std::make_unique<const SweepReader>(report.store);
   report.limited = limits::limited_points(*report.reader, prices);
   sim::write_file(report.points, tables::csv_of(report.limited->table));
   return report;
-}
-
-void join_sweep(Ranks& ranks, const SweepOptions& options,
-                const std::function<JoinedSweep(const std::string& configuration)>& read) {
-  std::optional<JoinedSweep> joined;
-  std::optional<SweepSite> site;
-  work_for_rank_0(ranks, options.threads != 0 ? options.threads : threads_of_rank(ranks),
-                  [&](const std::string& configuration) -> SweepSite& {
-                    joined = read(configuration);
-                    return site.emplace(joined->plan, joined->memory);
-                  });
 }
 
 }  // namespace marti::studies::sweep

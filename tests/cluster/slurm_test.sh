@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep-cluster.md under a Slurm of one node that is started
-# for it, as two tasks, and compares what it says with a sweep of one process. Ends everything that it has started.
+# slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep-cluster.md, as an array of two jobs, and srun with two
+# tasks under a Slurm of one node that is started for it; compares with a sweep of one process. Ends everything that it
+# has started.
 set -euo pipefail
 # Daemons are started in the long run only (./test --full), even if Slurm is installed.
 if [ -z "${MARTI_LONG_TESTS-}" ]; then
@@ -70,7 +71,7 @@ done
 # The first step that a batch job starts after the daemons fails now and then, so let one go by.
 for _ in $(seq 5); do
   echo '#!/bin/bash
-srun --mpi=pmix -n 2 true' >"$work/first.sh"
+srun -n 2 true' >"$work/first.sh"
   timeout 60 sbatch --wait --nodes=1 --ntasks=2 -o "$work/first.txt" "$work/first.sh" >"$work/sbatch.log" 2>&1 &&
     [ ! -s "$work/first.txt" ] && break
 done
@@ -83,12 +84,20 @@ mkdir "$work/bin" && ln -s "$program" "$work/bin/marti"
 cp -r "$source/configs" "$work/configs"
 cp "$source/configs/sweep-small.toml" "$work/configs/sweep.toml"
 cd "$work"
-export PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-timeout 300 sbatch --wait --nodes=1 --ntasks=2 --ntasks-per-node=2 --cpus-per-task=1 --time=5 \
-  -o "$work/job.txt" "$work/job.sh" || fail "the job failed"
-[ "$(scontrol show jobs -o | tail -n 1 | grep -o 'NumTasks=[0-9]*')" = NumTasks=2 ] || fail "the job had not two tasks"
-[ "$(grep -c '^timed ' "$work/job.txt")" = 1 ] || fail "the two tasks did not sweep together"
-
+export PATH=$work/bin:$PATH
 marti sweep configs/sweep.toml -o alone >alone.txt
-cmp results/sweep/points.csv alone/points.csv || fail "the points differ from those of one process"
-echo "passed: a sweep of two tasks under Slurm gives the points of one process"
+same() {
+  cmp "$1/points.csv" alone/points.csv || fail "the points differ from those of one process"
+  [ "$(ls "$1")" = "$(ls alone)" ] || fail "parts are left in $1"
+}
+
+timeout 300 sbatch --wait --array=1-2 --cpus-per-task=1 --time=5 -o "$work/job-%a.txt" "$work/job.sh" ||
+  fail "the array failed"
+[ "$(cat job-1.txt job-2.txt | grep -c '^timed ')" = 2 ] || fail "the two jobs did not both time machines"
+same results/sweep
+
+printf '#!/bin/bash\nsrun marti sweep configs/sweep.toml -o srun\n' >srun.sh
+timeout 300 sbatch --wait --nodes=1 --ntasks=2 --time=5 -o "$work/srun.txt" srun.sh || fail "the job failed"
+[ "$(grep -c '^share ' srun.txt)" = 2 ] || fail "the two tasks did not share the sweep"
+same srun
+echo "passed: sweeps of two processes under Slurm give the points of one process"

@@ -15,18 +15,6 @@
 
 namespace marti::studies::sweep {
 
-std::string digest_of(const SweepPlan& plan) {
-  Digest digest;
-  digest.add(host::build_of_program());
-  for (const SweepFrame& frame : plan.frames) {
-    digest.add(frame.key);
-  }
-  for (const SweepMachine& machine : plan.machines) {
-    digest.add(machine.key);
-  }
-  return digest.hex();
-}
-
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
   const auto on_frame = [&](const std::string& machine) {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "studies/sweep/plan/byte_codec.h"
+#include "studies/sweep/plan/digest.h"
 
 namespace marti::studies::sweep {
 

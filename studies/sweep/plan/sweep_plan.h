@@ -81,10 +81,6 @@ struct SweepPlan {
 /// host_machine.memory_limit, before its points are read.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {});
 
-/// A digest of program, frames and machines, the content of scenes included: 32 hexadecimal digits, on which
-/// all ranks of a sweep must agree.
-[[nodiscard]] std::string digest_of(const SweepPlan& plan);
-
 /// Estimated seconds of processor time for each frame of a plan; empty: not estimated.
 struct FrameCosts {
   std::vector<double> tracing;  ///< of the frame itself

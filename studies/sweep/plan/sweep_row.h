@@ -1,5 +1,5 @@
 // What is kept of a timed machine: its counters, summed over its nodes, and its histograms of waits; and what
-// is kept of a frame. parts() is for their bytes (sweep/plan/byte_codec.h).
+// is kept of a frame.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "processors/machine/machine_config.h"
@@ -26,18 +25,15 @@ struct SweepHistogram {
     std::int64_t highest = 0;
     std::int64_t count = 0;
     bool operator==(const Bucket&) const = default;
-    static auto parts(auto& bucket) { return std::tie(bucket.lowest, bucket.highest, bucket.count); }
   };
   std::vector<Bucket> buckets;
   bool operator==(const SweepHistogram&) const = default;
-  static auto parts(auto& histogram) { return std::tie(histogram.what, histogram.buckets); }
 };
 
 struct SweepRow {
   figures::Counts counters;  ///< one for each of counted_figures()
   std::vector<SweepHistogram> histograms;
   bool operator==(const SweepRow&) const = default;
-  static auto parts(auto& row) { return std::tie(row.counters, row.histograms); }
 };
 
 /// Names of the histograms that a row can have.
@@ -56,9 +52,6 @@ struct FrameRow {
   std::string hit_hash;
   std::vector<std::string> notes;
   bool operator==(const FrameRow&) const = default;
-  static auto parts(auto& row) {
-    return std::tie(row.counters, row.scene, row.scene_hash, row.image_hash, row.hit_hash, row.notes);
-  }
 };
 
 /// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).

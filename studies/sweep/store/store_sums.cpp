@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "sim/error.h"
-#include "studies/sweep/plan/byte_codec.h"
 #include "studies/sweep/plan/digest.h"
 #include "studies/sweep/store/store_schema.h"
 

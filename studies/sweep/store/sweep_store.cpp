@@ -29,9 +29,7 @@ SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan,
   if (!is_new) {
     const std::int64_t format = check_store_format(*connection_, file);
     check_store_version(*connection_, file);
-    if (held == nullptr) {
-      check_whole(*connection_, file, format);
-    }
+    check_whole(*connection_, file, format);
   }
   begin_log();
   connection_->transact([&] {

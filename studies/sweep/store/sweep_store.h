@@ -24,8 +24,7 @@ class SweepStore {
   /// Opens the file, or makes it, and enters what the plan asks for in one transaction: older results stay.
   /// Refuses a file that is not a store, one of another version of the store or of the program (whose results
   /// could differ), and one that another process has open.
-  /// `held`: the caller has the file's lock and a SweepReader has found since then that the file, if it is
-  /// there, is not damaged. So it is neither locked nor read again for that.
+  /// `held`: the lock of the file, where the caller has it.
   SweepStore(const std::filesystem::path& file, const SweepPlan& plan, const StoreLock* held = nullptr);
 
   /// For each machine of the plan: is its result there?
@@ -38,6 +37,12 @@ class SweepStore {
   // so it goes to tables of its own.
   void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
+
+  /// Takes what a part of this store (store_parts.h) has of the plan's machines and the store has not, in one
+  /// transaction, and removes the part, unless it has results that no plan of the store has asked for. Throws
+  /// UserError when a process is writing the part, and when its results may not be merged with those of this
+  /// program.
+  void merge(const std::filesystem::path& part);
 
   /// Ends the write-ahead log, so that the store is one file again.
   void close();

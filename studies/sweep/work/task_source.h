@@ -9,14 +9,13 @@
 
 namespace marti::studies::sweep {
 
-/// Thread-safe. In one process it is the schedule itself (sweep/work/coordinator.h); a rank that does not
-/// hold the schedule asks the rank that does.
+/// Thread-safe. In the program it is the schedule itself (sweep/work/coordinator.h).
 class TaskSource {
  public:
   virtual ~TaskSource() = default;
   /// The next task, never `wait`: it blocks until there is one.
   [[nodiscard]] virtual SweepTask next() = 0;
-  /// The log is in this process' cache of logs.
+  /// The log is in the cache of logs.
   virtual void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) = 0;
   virtual void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) = 0;
   /// Some worker has failed: every next() from now on gives `end`.

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include "sim/files.h"
-#include "studies/sweep/plan/byte_codec.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/tables/sqlite_connection.h"
@@ -39,6 +38,12 @@ void add_cell(std::string& text, const Cell& cell) {
   text += ';';
 }
 
+void add_counters(std::string& text, const figures::Counts& counters) {
+  for (const std::optional<std::int64_t>& counter : counters) {
+    add_cell(text, counter ? Cell(*counter) : Cell());
+  }
+}
+
 // Everything that reports and comparisons read.
 std::string figures_of(const fs::path& file) {
   const SweepReader reader(file);
@@ -55,9 +60,24 @@ std::string figures_of(const fs::path& file) {
         add_cell(text, cell);
       }
     }
-    const auto row = reader.read_result(point.machine);
-    const auto frame = reader.read_frame(point.machine);
-    text += ByteWriter().write(row, frame).take();
+    if (const auto row = reader.read_result(point.machine)) {
+      add_counters(text, row->counters);
+      for (const SweepHistogram& histogram : row->histograms) {
+        text += histogram.what + ";";
+        for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
+          add_counters(text, {bucket.lowest, bucket.highest, bucket.count});
+        }
+      }
+    }
+    if (const auto frame = reader.read_frame(point.machine)) {
+      add_counters(text, frame->counters);
+      for (const std::string& part : {frame->scene, frame->scene_hash, frame->image_hash, frame->hit_hash}) {
+        text += part + ";";
+      }
+      for (const std::string& note : frame->notes) {
+        text += note + ";";
+      }
+    }
     for (const auto& [key, value] : reader.settings(point.machine)) {
       text += key + "=" + value + ";";
     }
