@@ -1,6 +1,5 @@
-// What the plan of a run saves: processor time and peak memory of each shipped scene, with the plan, with
-// everything kept, and with everything kept but the structures that are not used. Each run is a process of
-// its own, so that its peak memory can be measured.
+// What the plan of a run saves: processor time and peak memory of each shipped scene, with the plan and with
+// everything kept. Each run is a process of its own, so that its peak memory can be measured.
 //   bench_keep [SIZE [REPEATS [FILE...]]]     default: 128, 3; FILE: scenes beside the procedural ones
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -66,12 +65,6 @@ Usage median(std::vector<Usage> usages) {
   return {middle(&Usage::seconds), middle(&Usage::mebibytes)};
 }
 
-std::vector<std::string> all_but_structures() {
-  std::vector<std::string> names(studies::run::plan_item_names.begin(), studies::run::plan_item_names.end());
-  std::erase(names, std::string(studies::run::name_of(studies::run::PlanItem::structures)));
-  return names;
-}
-
 void run(bench::Report& report, const std::string& size, int repeats, const std::vector<std::string>& files) {
   std::vector<std::string> scenes;
   for (const scenes::ProceduralScene& scene : scenes::procedural_scenes()) {
@@ -79,10 +72,9 @@ void run(bench::Report& report, const std::string& size, int repeats, const std:
   }
   scenes.insert(scenes.end(), files.begin(), files.end());
   const std::vector<studies::run::KeptItems> kept = {studies::run::KeptItems(),
-                                                     studies::run::KeptItems(all_but_structures()),
                                                      studies::run::KeptItems::all()};
-  std::printf("%-16s %26s %26s\n", "", "processor time, s", "peak memory, MiB");
-  std::printf("%-16s %8s %8s %8s %8s %8s %8s\n", "scene", "plan", "kept*", "kept", "plan", "kept*", "kept");
+  std::printf("%-16s %17s %17s\n", "", "processor time, s", "peak memory, MiB");
+  std::printf("%-16s %8s %8s %8s %8s\n", "scene", "plan", "kept", "plan", "kept");
   for (const std::string& scene : scenes) {
     std::vector<std::vector<Usage>> usages(kept.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -91,16 +83,14 @@ void run(bench::Report& report, const std::string& size, int repeats, const std:
       }
     }
     const Usage plan = median(usages[0]);
-    const Usage most = median(usages[1]);
-    const Usage all = median(usages[2]);
+    const Usage all = median(usages[1]);
     const std::string name = scene.substr(scene.rfind('/') + 1);
-    std::printf("%-16s %8.3f %8.3f %8.3f %8.1f %8.1f %8.1f\n", name.c_str(), plan.seconds, most.seconds,
-                all.seconds, plan.mebibytes, most.mebibytes, all.mebibytes);
+    std::printf("%-16s %8.3f %8.3f %8.1f %8.1f\n", name.c_str(), plan.seconds, all.seconds, plan.mebibytes,
+                all.mebibytes);
     report.add(bench::against(name + ", plan", "s", plan.seconds, "everything kept", all.seconds));
     report.add(
         bench::against(name + ", plan, peak", "MiB", plan.mebibytes, "everything kept", all.mebibytes));
   }
-  std::printf("* all but the structures that the run does not ask for\n");
 }
 
 }  // namespace

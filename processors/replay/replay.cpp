@@ -45,9 +45,6 @@ walk::LeftOut leave_out(const ReplayOptions& options, walk::ReplayInput& input) 
   if (!options.keep_lookups && walk::why_lookups(config, input.layout) == nullptr) {
     input.line_set = walk::lines_of(input.layout, config.cache.cache.line);
     left.lookups = true;
-    left.tag_bytes =
-        memory::shape_of(config.cache.cache).lines() * sizeof(std::uint32_t) * config.all_nodes();
-    left.line_set_bytes = (input.line_set + 7) / 8 * config.all_nodes();
   }
   // Observers need every read. Replays with a sample need the events.
   const bool plain = options.observer == nullptr && options.sample == nullptr;
@@ -157,12 +154,6 @@ MachineResult replay_image(const program::WorkLog& log, const machine::MachineCo
   result.host = host.statistics();
   result.packets = packets.size();
   result.left_out = left_out;
-  if (left_out.lookups) {
-    result.left_out.references = result.references().references();
-  }
-  if (left_out.read_events) {
-    result.left_out.reads = result.references().all_misses();
-  }
   result.pixels = pixels_of(packets, log, options.sample);
   result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);

@@ -11,18 +11,13 @@
 
 #include "memory/layout.h"
 #include "processors/machine/machine_config.h"
-#include "sim/time.h"
 
 namespace marti::processors::walk {
 
 /// What of a replay was left out.
 struct LeftOut {
-  bool lookups = false;              ///< tags and their replacement
-  bool read_events = false;          ///< an event for each read
-  std::int64_t references = 0;       ///< references that were not looked up in tags
-  std::int64_t reads = 0;            ///< reads that took no event
-  std::uint64_t tag_bytes = 0;       ///< host memory that the tags would have taken
-  std::uint64_t line_set_bytes = 0;  ///< host memory that was taken instead
+  bool lookups = false;      ///< tags and their replacement
+  bool read_events = false;  ///< an event for each read
 };
 
 /// Number of lines of the database, from line 0 on, that the machine's caches may be asked for.

@@ -58,11 +58,11 @@
 #include "studies/show/output.h"
 #include "studies/show/result_json.h"
 #include "studies/show/summary.h"
+#include "studies/show/verify_plan.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/tables/page_file.h"
 #include "studies/tables/result_directory.h"
-#include "studies/verify/verify_plan.h"
 #include "studies/version.h"
 
 namespace marti::studies::cli {
@@ -172,8 +172,7 @@ void run_command(const RunArguments& arguments) {
   }
   std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const run::RunResult result = run::run(config, std::move(options));
-  const verify::PlanVerdict verdict =
-      arguments.verify_plan ? verify::verify_plan(result) : verify::PlanVerdict();
+  const show::PlanVerdict verdict = arguments.verify_plan ? show::verify_plan(result) : show::PlanVerdict();
   shown.reset();  // before anything is printed
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);

@@ -40,18 +40,6 @@ void note_cut_tree(const keys::FrameConfig& config, const accel::Structure& stru
   }
 }
 
-// Structures that the frame does not use, built only if the user wants plan item `structures` kept.
-std::vector<std::unique_ptr<accel::Structure>> kept_structures(
-    const keys::FrameConfig& config, const std::shared_ptr<const accel::TriangleSet>& triangles) {
-  std::vector<std::unique_ptr<accel::Structure>> kept;
-  for (const std::string_view kind : accel::structure_kinds()) {
-    if (config.keep.has(PlanItem::structures) && kind != config.structure) {
-      kept.push_back(accel::make_structure(kind, triangles, config.structure_options));
-    }
-  }
-  return kept;
-}
-
 // Requires memory for all textures, and for the largest once more, as its decoder returns it.
 void require_textures(const keys::FrameConfig& config, const scenes::Scene& scene, std::uint64_t texels) {
   constexpr std::uint64_t bytes_a_texel = 4;
@@ -89,7 +77,7 @@ PreparedFrame::PreparedFrame(const keys::FrameConfig& config, scenes::Scene scen
 void PreparedFrame::prepare_planned(scenes::Scene scene, scenes::FileUse file) {
   config_.memory.require(scenes::host_bytes(scene) + scenes::host_bytes_of_facts(scene),
                          "the scene, sorted to be described, takes", smaller_scene);
-  facts_ = facts_of_frame(scene, config_.render, config_.structure, config_.keep);
+  facts_ = facts_of_frame(scene, config_.render, config_.keep);
   facts_->file = std::move(file);
   run_.plan = make_plan(*facts_);
   run_.scene = scenes::facts_of(scene);
@@ -117,7 +105,6 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
   sim::begin_part(config_.meter, "building the " + config_.structure);
   triangles_ = std::make_shared<const accel::TriangleSet>(scene);
   structure_ = accel::make_structure(config_.structure, triangles_, config_.structure_options);
-  others_ = kept_structures(config_, triangles_);
   // The work log has a copy of the tree.
   config_.memory.take(accel::host_bytes(*structure_) + accel::bytes_of(structure_->topology()),
                       "the structure and its copy in the work log take",
@@ -182,7 +169,7 @@ FunctionalRun PreparedFrame::finish(processors::program::Frame frame) const {
     run.notes.push_back(std::move(note));
   }
   if (facts_) {
-    count_saved(run.plan, facts_->needs, *scene_, run.frame, run.totals, shades);
+    check_plan(run.plan, facts_->needs, run.frame, shades);
   }
   if (config_.render.voxel_cut > 0.0) {
     VoxelReport& report = run.voxel_cut.emplace();

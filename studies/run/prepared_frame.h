@@ -49,8 +49,7 @@ class PreparedFrame {
   std::optional<PlanFacts> facts_;  // empty: nothing is left out
   std::shared_ptr<const accel::TriangleSet> triangles_;
   std::unique_ptr<accel::Structure> structure_;
-  std::vector<std::unique_ptr<accel::Structure>> others_;  // that the user wants kept
-  FunctionalRun run_;                                      // all but the frame
+  FunctionalRun run_;  // all but the frame
 };
 
 }  // namespace marti::studies::run

@@ -126,10 +126,8 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::program::WorkLog& log = *result.functional.frame.log;
-  std::vector<PlanEntry> entries =
-      machine_plan(kept, result.machine, log, result.functional.totals, options.observer != nullptr);
+  std::vector<PlanEntry> entries = machine_plan(kept, result.machine, log, options.observer != nullptr);
   processors::replay::MachineResult timed = processors::replay::replay(log, result.machine, options);
-  count_machine_plan(timed, entries);
   add_entries(result.plan, std::move(entries));
   if (path) {
     result.critical_path = path->path();
@@ -301,13 +299,6 @@ RunResult run(sim::Config& config, RunOptions options) {
 RunResult run_again(const RunResult& first, const KeptItems& keep) {
   RunResult result = described_by(first, keep);
   result.functional = run_functional(result.frame_config);
-  (void)time_frame({}, options_like(first), result);
-  return result;
-}
-
-RunResult time_again(const RunResult& first, const KeptItems& keep) {
-  RunResult result = described_by(first, keep);
-  result.functional = first.functional;
   (void)time_frame({}, options_like(first), result);
   return result;
 }

@@ -83,8 +83,6 @@ struct RunOptions {
 
 /// Runs the frame and the machine of `first` again, with these items of the plan kept. Nothing is recorded.
 [[nodiscard]] RunResult run_again(const RunResult& first, const KeptItems& keep);
-/// Like run_again, but the frame is not rendered again.
-[[nodiscard]] RunResult time_again(const RunResult& first, const KeptItems& keep);
 
 /// Throws UserError when the simulated machine would take more of the computer's memory than the frame may.
 void refuse_beyond_memory(const sim::Config& config, const keys::FrameConfig& frame,

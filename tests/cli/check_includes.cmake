@@ -45,7 +45,6 @@ room(studies/limits figures helps keys sweep/plan sweep/store tables)
 room(studies/run figures helps host keys run/plan run/record)
 room(studies/run/trace host keys run run/record)
 room(studies/show figures helps host keys run run/plan run/record tables)
-room(studies/verify host keys run run/plan show)
 room(studies/estimate figures keys run show tables)
 room(studies/sweep/plan figures host keys run tables)
 room(studies/sweep/store figures host keys run sweep/plan tables)
@@ -65,7 +64,7 @@ room(studies/stability host keys run show tables)
 room(studies/error estimate figures host keys paper run tables)
 room(studies/explore estimate figures host keys progress report/model report/page report/plots report/read run show tables)
 room(studies/cli compare error estimate explore figures frames host keys limits operations paper progress report run run/plan run/trace schemes show
-     stability sweep sweep/plan sweep/store tables verify)
+     stability sweep sweep/plan sweep/store tables)
 
 # A header pattern and the pattern of the files that may include it. C++'s own headers, which anyone may
 # include, have neither dot nor slash; nor have these of another library.

@@ -14,14 +14,8 @@ namespace marti::studies::run {
 void keep(const KeptItems& kept, processors::replay::ReplayOptions& options);
 
 /// Both items for this machine, decided from its configuration and the size of its database, before it runs.
-/// The estimated saving is the number of records that the log refers to, which `totals` of the log tell.
 [[nodiscard]] std::vector<PlanEntry> machine_plan(const KeptItems& kept,
                                                   const processors::machine::MachineConfig& machine,
-                                                  const processors::program::WorkLog& log,
-                                                  const processors::program::LogTotals& totals,
-                                                  bool observed);
-
-/// After the run: enters what was counted.
-void count_machine_plan(const processors::replay::MachineResult& result, std::vector<PlanEntry>& entries);
+                                                  const processors::program::WorkLog& log, bool observed);
 
 }  // namespace marti::studies::run

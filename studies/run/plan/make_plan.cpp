@@ -4,25 +4,17 @@
 #include <string_view>
 #include <utility>
 
-#include "accel/bsp.h"
-#include "accel/bvh.h"
 #include "accel/traversal.h"
+#include "sim/error.h"
 
 namespace marti::studies::run {
 
 namespace {
 
-constexpr std::int64_t normal_bytes = sizeof(glm::dvec3);
-constexpr std::int64_t coordinate_bytes = sizeof(glm::dvec2);
-constexpr std::int64_t texel_bytes = 4;
-constexpr std::int64_t mailbox_bytes = sizeof(std::uint64_t);
-
 std::string of(std::uint64_t part, std::uint64_t whole, std::string_view what) {
   std::string text = std::to_string(part) + " of " + std::to_string(whole) + " ";
   return text.append(what);
 }
-
-std::int64_t integer(std::uint64_t value) { return static_cast<std::int64_t>(value); }
 
 // Whether an item exists and is needed, and the reason. Others are left out unless the user wants them kept.
 struct Choice {
@@ -31,21 +23,12 @@ struct Choice {
   std::string fact;
 };
 
-PlanEntry entry_of(PlanItem item, PlanClass kind, const KeptItems& keep, Choice choice, std::string unit,
-                   const PlanCost& saved) {
-  PlanEntry entry;
-  entry.item = item;
-  entry.kind = kind;
-  entry.decision = !choice.exists   ? PlanDecision::not_applicable
-                   : choice.needed  ? PlanDecision::needed
-                   : keep.has(item) ? PlanDecision::kept
-                                    : PlanDecision::left_out;
-  entry.fact = std::move(choice.fact);
-  entry.unit = std::move(unit);
-  if (entry.decision == PlanDecision::left_out) {
-    entry.saved = saved;
-  }
-  return entry;
+PlanEntry entry_of(PlanItem item, const KeptItems& keep, Choice choice) {
+  const PlanDecision decision = !choice.exists   ? PlanDecision::not_applicable
+                                : choice.needed  ? PlanDecision::needed
+                                : keep.has(item) ? PlanDecision::kept
+                                                 : PlanDecision::left_out;
+  return {item, decision, std::move(choice.fact)};
 }
 
 PlanEntry shadow_rays(const PlanFacts& facts) {
@@ -64,15 +47,11 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   } else {
     choice.fact = of(needs.unlit, needs.shaded, "materials that a ray may meet ask for lights and are black");
   }
-  const auto pixels = std::uint64_t{facts.render.width} * facts.render.height * facts.render.samples;
-  return entry_of(
-      PlanItem::shadow_rays, needs.shadow_rays ? PlanClass::on_demand : PlanClass::proved, facts.keep,
-      std::move(choice), "lights asked at points",
-      {0, integer(pixels * needs.shining_lights * needs.unlit / std::max<std::uint64_t>(1, needs.shaded))});
+  return entry_of(PlanItem::shadow_rays, facts.keep, std::move(choice));
 }
 
 PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::uint64_t sending,
-                       std::uint64_t beside, std::string_view verb, bool in_one_go) {
+                       std::uint64_t beside, std::string_view verb) {
   Choice choice;
   if (facts.render.max_depth <= 1) {
     choice = {false, false, "image.max_depth is 1"};
@@ -86,10 +65,7 @@ PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::
       choice.fact += ", but light that cannot be refracted is reflected";
     }
   }
-  // Both kinds are decided by one test at each point.
-  const auto pixels = std::int64_t{facts.render.width} * facts.render.height * facts.render.samples;
-  return entry_of(item, PlanClass::proved, facts.keep, std::move(choice), "tests at points",
-                  {0, in_one_go ? pixels : 0});
+  return entry_of(item, facts.keep, std::move(choice));
 }
 
 PlanEntry textures(const PlanFacts& facts) {
@@ -101,9 +77,7 @@ PlanEntry textures(const PlanFacts& facts) {
   choice.fact = choice.exists
                     ? of(used, needs.textures.size(), "textures may colour a point that a ray meets")
                     : "the scene has no textures";
-  const std::int64_t texels = integer(facts.texels - facts.texels_needed);
-  return entry_of(PlanItem::textures, PlanClass::proved, facts.keep, std::move(choice), "texels decoded",
-                  {texels * texel_bytes, texels});
+  return entry_of(PlanItem::textures, facts.keep, std::move(choice));
 }
 
 PlanEntry coordinates(const PlanFacts& facts) {
@@ -113,8 +87,7 @@ PlanEntry coordinates(const PlanFacts& facts) {
   choice.fact = choice.exists ? of(facts.needs.textured, facts.needs.shaded,
                                    "materials that a ray may meet have a texture")
                               : "the scene has no texture coordinates";
-  return entry_of(PlanItem::texture_coordinates, PlanClass::proved, facts.keep, std::move(choice), "vertices",
-                  {integer(facts.coordinates) * coordinate_bytes, integer(facts.coordinates)});
+  return entry_of(PlanItem::texture_coordinates, facts.keep, std::move(choice));
 }
 
 PlanEntry normals(const PlanFacts& facts) {
@@ -127,50 +100,36 @@ PlanEntry normals(const PlanFacts& facts) {
   } else {
     choice.fact = std::to_string(needs.smooth) + " triangles that a ray may meet are shaded by them";
   }
-  return entry_of(PlanItem::normals, PlanClass::proved, facts.keep, std::move(choice), "vertices",
-                  {integer(facts.normals) * normal_bytes, integer(facts.normals)});
+  return entry_of(PlanItem::normals, facts.keep, std::move(choice));
 }
 
 PlanEntry unreachable(const PlanFacts& facts) {
   Choice choice;
   choice.exists = !facts.file.parts.empty();
   choice.fact = choice.exists ? "" : "the scene comes from no file";
-  std::int64_t unused = 0;
+  bool unused = false;
   for (const scenes::PartUse& part : facts.file.parts) {
     if (part.used < part.all) {
       choice.fact += (choice.fact.empty() ? "" : ", ") + of(part.all - part.used, part.all, part.name);
-      unused += integer(part.all - part.used);
+      unused = true;
     }
   }
-  if (choice.exists && unused == 0) {
+  if (choice.exists && !unused) {
     choice.needed = true;
     choice.fact = "the scene uses every part of its file";
   } else if (choice.exists) {
     choice.fact += " of the file are of no use to this scene and camera";
   }
-  return entry_of(PlanItem::unreachable, PlanClass::proved, facts.keep, std::move(choice),
-                  "parts of the file", {integer(facts.file.unread_bytes), unused});
-}
-
-PlanEntry structures(const PlanFacts& facts) {
-  // Those that sort primitives into cells: a bounding volume hierarchy divides lists of them instead.
-  const auto kinds = accel::structure_kinds();
-  const auto others = std::ranges::count_if(kinds, [&](std::string_view kind) {
-    return kind != facts.structure && kind != accel::BruteForce::kind_name && kind != accel::Bvh::kind_name;
-  });
-  return entry_of(PlanItem::structures, PlanClass::proved, facts.keep,
-                  {true, false, "structure.kind is " + facts.structure + "; no other kind is built"},
-                  "primitives sorted", {0, others * integer(facts.needs.primitives)});
+  return entry_of(PlanItem::unreachable, facts.keep, std::move(choice));
 }
 
 }  // namespace
 
 PlanFacts facts_of_frame(const scenes::Scene& scene, const processors::program::RenderOptions& render,
-                         const std::string& structure, const KeptItems& keep) {
+                         const KeptItems& keep) {
   PlanFacts facts;
   facts.needs = needs_of(scene, render);
   facts.render = render;
-  facts.structure = structure;
   facts.keep = keep;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     facts.texels += scene.textures[i].size();
@@ -186,15 +145,13 @@ Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further) {
   Plan plan;
   plan.entries.push_back(shadow_rays(facts));
   plan.entries.push_back(spawned_rays(facts, PlanItem::reflection_rays, needs.reflection_rays,
-                                      needs.reflecting, needs.reflecting_beside, "reflect", true));
+                                      needs.reflecting, needs.reflecting_beside, "reflect"));
   plan.entries.push_back(spawned_rays(facts, PlanItem::refraction_rays, needs.refraction_rays,
-                                      needs.transmitting, needs.transmitting_beside, "let light through",
-                                      false));
+                                      needs.transmitting, needs.transmitting_beside, "let light through"));
   plan.entries.push_back(textures(facts));
   plan.entries.push_back(coordinates(facts));
   plan.entries.push_back(normals(facts));
   plan.entries.push_back(unreachable(facts));
-  plan.entries.push_back(structures(facts));
   add_entries(plan, std::move(further));
   return plan;
 }
@@ -221,8 +178,7 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
       mailboxes.fact += ", but this walk may come upon a leaf twice";
     }
   }
-  add_entries(plan, {entry_of(PlanItem::mailboxes, PlanClass::proved, facts.keep, std::move(mailboxes),
-                              "look-ups", {integer(structure.triangles().size()) * mailbox_bytes, 0})});
+  add_entries(plan, {entry_of(PlanItem::mailboxes, facts.keep, std::move(mailboxes))});
 }
 
 bool is_left_out(const Plan& plan, PlanItem item) {
@@ -263,6 +219,24 @@ void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDe
   if (is_left_out(plan, PlanItem::normals)) {
     scene.normals = {};
   }
+}
+
+void check_plan(const Plan& plan, const SceneNeeds& needs, const processors::program::Frame& frame,
+                std::span<const std::uint64_t> shades) {
+  using processors::program::RayKind;
+  for (std::size_t i = 0; i < needs.materials.size(); ++i) {
+    sim::ensure(needs.materials[i] || shades[i] == 0,
+                "the plan took a material for one that no ray can meet, and a ray has met it");
+  }
+  const auto none = [&](RayKind kind) { return frame.rays.traced[static_cast<std::size_t>(kind)] == 0; };
+  sim::ensure(needs.shadow_rays || !is_left_out(plan, PlanItem::shadow_rays) || none(RayKind::shadow),
+              "the plan left out all shadow rays, and one was sent");
+  sim::ensure(needs.reflection_rays || none(RayKind::reflection),
+              "the plan left out reflected rays, and one was sent");
+  sim::ensure(needs.refraction_rays || none(RayKind::refraction),
+              "the plan left out refracted rays, and one was sent");
+  sim::ensure(needs.diffuse_rays || none(RayKind::diffuse),
+              "the plan has no use for diffuse rays, and one was sent");
 }
 
 }  // namespace marti::studies::run

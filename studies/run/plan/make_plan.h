@@ -1,4 +1,4 @@
-// The plan of a frame: decided from facts before the frame is rendered, counted afterwards.
+// The plan of a frame: decided from facts before the frame is rendered, checked afterwards.
 //
 // Only work and memory of this computer are saved: the simulated machine's database and its work log are
 // those of the scene that the user describes, so that all its statistics are the same. The one exception is a
@@ -25,7 +25,6 @@ struct PlanFacts {
   SceneNeeds needs;
   scenes::FileUse file;
   processors::program::RenderOptions render;  ///< as the configuration has it
-  std::string structure;                      ///< its kind
   KeptItems keep;
 
   // Of the scene as it was opened.
@@ -37,7 +36,7 @@ struct PlanFacts {
 
 [[nodiscard]] PlanFacts facts_of_frame(const scenes::Scene& scene,
                                        const processors::program::RenderOptions& render,
-                                       const std::string& structure, const KeptItems& keep);
+                                       const KeptItems& keep);
 
 /// The items of scene and frame. `further` are entries of other items.
 [[nodiscard]] Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further = {});
@@ -54,10 +53,9 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
 void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode,
                 scenes::Scene& scene);
 
-/// Fills in what the frame shows to have been saved. Throws InternalError where the frame has used what was
-/// left out. `totals` and `shades` are what processors::totals_of() says of the frame's log.
-void count_saved(Plan& plan, const SceneNeeds& needs, const scenes::Scene& scene,
-                 const processors::program::Frame& frame, const processors::program::LogTotals& totals,
-                 std::span<const std::uint64_t> shades);
+/// Throws InternalError where the frame has used what was left out. `shades`: how often each material was
+/// shaded, as processors::totals_of() says of the frame's log.
+void check_plan(const Plan& plan, const SceneNeeds& needs, const processors::program::Frame& frame,
+                std::span<const std::uint64_t> shades);
 
 }  // namespace marti::studies::run

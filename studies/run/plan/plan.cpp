@@ -39,6 +39,12 @@ KeptItems KeptItems::all() {
   return kept;
 }
 
+KeptItems KeptItems::all_but_shadow_rays() {
+  KeptItems kept = all();
+  kept.bits_.reset(static_cast<std::size_t>(PlanItem::shadow_rays));
+  return kept;
+}
+
 void add_entries(Plan& plan, std::vector<PlanEntry> entries) {
   plan.entries.insert(plan.entries.end(), std::make_move_iterator(entries.begin()),
                       std::make_move_iterator(entries.end()));

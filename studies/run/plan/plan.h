@@ -8,7 +8,6 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,25 +23,15 @@ enum class PlanItem : std::uint8_t {
   texture_coordinates,
   normals,
   unreachable,
-  structures,
   mailboxes,
   contention,
   cache,
 };
-inline constexpr std::size_t plan_items = 11;
+inline constexpr std::size_t plan_items = 10;
 /// As --keep and reports name them.
 inline constexpr std::array<std::string_view, plan_items> plan_item_names = {
-    "shadow-rays", "reflection-rays", "refraction-rays", "textures",  "texture-coordinates",
-    "normals",     "unreachable",     "structures",      "mailboxes", "contention",
-    "cache"};
-
-/// How it is known that an item is not needed.
-enum class PlanClass : std::uint8_t {
-  proved,     ///< before the run, from facts of the scene and the machine
-  on_demand,  ///< during the run, which does only what turns out to be needed
-};
-
-inline constexpr std::array<std::string_view, 2> plan_class_names = {"proved", "on demand"};
+    "shadow-rays", "reflection-rays", "refraction-rays", "textures",   "texture-coordinates",
+    "normals",     "unreachable",     "mailboxes",       "contention", "cache"};
 
 enum class PlanDecision : std::uint8_t {
   left_out,
@@ -54,20 +43,10 @@ enum class PlanDecision : std::uint8_t {
 inline constexpr std::array<std::string_view, 4> plan_decision_names = {"left out", "needed", "kept",
                                                                         "not applicable"};
 
-/// What an item costs.
-struct PlanCost {
-  std::int64_t bytes = 0;       ///< of the host's memory
-  std::int64_t operations = 0;  ///< rays, texels, vertices, references, ...; the entry's `unit`
-};
-
 struct PlanEntry {
   PlanItem item{};
-  PlanClass kind = PlanClass::proved;
   PlanDecision decision = PlanDecision::needed;
-  std::string fact;                 ///< what the decision rests on, for example "0 of 12 materials reflect"
-  std::string unit;                 ///< of PlanCost::operations; empty without any
-  PlanCost saved;                   ///< estimated before the run; all 0 unless left out
-  std::optional<PlanCost> counted;  ///< after the run; std::nullopt if it cannot be counted
+  std::string fact;  ///< what the decision rests on, for example "0 of 12 materials reflect"
 };
 
 /// Items that the user wants kept.
@@ -77,6 +56,8 @@ class KeptItems {
   /// `names`: of items, or "all". Throws UserError for another name, with the nearest.
   explicit KeptItems(std::span<const std::string> names);
   static KeptItems all();
+  /// All that cannot change the work log.
+  static KeptItems all_but_shadow_rays();
 
   [[nodiscard]] bool has(PlanItem item) const { return bits_[static_cast<std::size_t>(item)]; }
   void keep(PlanItem item) { bits_.set(static_cast<std::size_t>(item)); }

@@ -8,7 +8,7 @@
 
 namespace marti::studies::run {
 
-/// A line for each item that is left out, one for those the user keeps, and one for those that are needed.
+/// A line for each item that is left out, or would be and is kept; empty where nothing was at stake.
 [[nodiscard]] std::string plan_lines(const Plan& plan);
 
 [[nodiscard]] nlohmann::ordered_json plan_json(const Plan& plan);

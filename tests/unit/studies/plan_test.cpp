@@ -28,7 +28,7 @@ using testing::small_frame;
 
 Plan plan_of(const scenes::Scene& scene, const processors::program::RenderOptions& render,
              const KeptItems& keep = {}) {
-  return make_plan(facts_of_frame(scene, render, "octree", keep));
+  return make_plan(facts_of_frame(scene, render, keep));
 }
 
 PlanDecision decision(const scenes::Scene& scene, PlanItem item, const KeptItems& keep = {}) {
@@ -59,7 +59,7 @@ TEST(Plan, EntriesAreInTheOrderOfItemsOnceEach) {
   cache.item = PlanItem::cache;
   PlanEntry contention;
   contention.item = PlanItem::contention;
-  const Plan plan = make_plan(facts_of_frame(scene, small_frame().render, "octree", {}), {cache, contention});
+  const Plan plan = make_plan(facts_of_frame(scene, small_frame().render, {}), {cache, contention});
   for (std::size_t i = 1; i < plan.entries.size(); ++i) {
     EXPECT_LT(plan.entries[i - 1].item, plan.entries[i].item);
   }
@@ -88,10 +88,9 @@ TEST(Plan, LeavesOutWhatIsBehindTheCamera) {
     EXPECT_EQ(decision(scene, item, KeptItems::all()), PlanDecision::kept) << name_of(item);
   }
   Plan plan = plan_of(scene, small_frame().render);
-  EXPECT_EQ(testing::find_entry(plan, PlanItem::textures)->saved.bytes, 16);
   EXPECT_EQ(testing::find_entry(plan, PlanItem::reflection_rays)->fact,
             "0 of 1 materials that a ray may meet reflect; 1 that no ray can meet would");
-  EXPECT_EQ(planned_options(plan, facts_of_frame(scene, small_frame().render, "octree", {})).max_depth, 1U);
+  EXPECT_EQ(planned_options(plan, facts_of_frame(scene, small_frame().render, {})).max_depth, 1U);
 }
 
 // A mirror or glass in view sends rays to primitives beside the view.
@@ -129,11 +128,7 @@ TEST(Plan, BlackMaterialsSendNoShadowRays) {
   EXPECT_GT(with.totals.rays[1], 0U);
   EXPECT_EQ(with.image_hash, without.image_hash);
   Plan plan = without.plan;
-  const PlanEntry& entry = *testing::find_entry(plan, PlanItem::shadow_rays);
-  EXPECT_EQ(entry.decision, PlanDecision::left_out);
-  EXPECT_EQ(entry.kind, PlanClass::proved);
-  ASSERT_TRUE(entry.counted.has_value());
-  EXPECT_EQ(static_cast<std::uint64_t>(entry.counted->operations), with.totals.rays[1]);
+  EXPECT_EQ(testing::find_entry(plan, PlanItem::shadow_rays)->decision, PlanDecision::left_out);
   // A highlight shows on black.
   scene.materials[black].highlight = 0.5;
   EXPECT_EQ(decision(scene, PlanItem::shadow_rays), PlanDecision::needed);
@@ -147,7 +142,6 @@ TEST(Plan, MailboxesHaveNoEffectWhereNothingIsListedTwice) {
   frame.render.mailboxes = true;
   Plan plan = testing::run_planned(frame, scene).plan;
   EXPECT_EQ(testing::find_entry(plan, PlanItem::mailboxes)->decision, PlanDecision::left_out);
-  EXPECT_EQ(testing::find_entry(plan, PlanItem::mailboxes)->counted->operations, 64);
   frame.structure = "octree";
   Random random(7);
   for (int i = 0; i < 30; ++i) {
