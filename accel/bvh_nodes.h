@@ -1,6 +1,6 @@
 // The records of a bounding volume hierarchy as its walks read them; their layouts are those that a simulated
-// machine reads (docs/internals/bvh.md). A record holds the boxes of a branch's children, and says of each whether it
-// is a branch, and where, or a leaf, and what it lists. Leaves have no records.
+// machine reads (docs/internals/bvh.md). A record holds the boxes of a branch's children, and says of each
+// whether it is a branch, and where, or a leaf, and what it lists. Leaves have no records.
 //
 // Coordinates are those of BvhSpace.
 #pragma once

@@ -2,9 +2,9 @@
 // kept the resources that it needed.
 //
 // A course keeps, for each resource of a memory system, the chain of the tenure that had it last, and grants
-// tenures as the memory system itself does (docs/internals/model.md, Interconnects, Banks, Networks). It is told of
-// each call that the memory system gets; WatchedMemory compares the end of every chain with the time that the
-// memory system has given.
+// tenures as the memory system itself does (docs/internals/model.md, Interconnects, Banks, Networks). It is
+// told of each call that the memory system gets; WatchedMemory compares the end of every chain with the time
+// that the memory system has given.
 #pragma once
 
 #include <memory>

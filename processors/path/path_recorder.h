@@ -1,4 +1,5 @@
-// Records the critical path of a frame while a replay is observed (docs/internals/model.md, The critical path).
+// Records the critical path of a frame while a replay is observed (docs/internals/model.md, The critical
+// path).
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// A second pipeline, written from docs/internals/pipeline.md with plain structures: one cluster, a copy of the database
-// in each node's own memory, one level of caches or none. It goes through a ray's steps one by one and keeps
-// events in a set.
+// A second pipeline, written from docs/internals/pipeline.md with plain structures: one cluster, a copy of
+// the database in each node's own memory, one level of caches or none. It goes through a ray's steps one by
+// one and keeps events in a set.
 #pragma once
 
 #include <deque>

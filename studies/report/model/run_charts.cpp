@@ -184,10 +184,11 @@ tables::Table visits_table(const tables::RunJson& run) {
 }
 
 tables::Table path_table(const tables::RunJson& run) {
-  tables::Table table("run_path", "The critical path",
-                      {tables::text_column("what", "what is done, see docs/internals/model.md, The critical path"),
-                       tables::integer_column("ps", "ps", "time of it on the path"),
-                       tables::real_column("share", "fraction", "of the frame time")});
+  tables::Table table(
+      "run_path", "The critical path",
+      {tables::text_column("what", "what is done, see docs/internals/model.md, The critical path"),
+       tables::integer_column("ps", "ps", "time of it on the path"),
+       tables::real_column("share", "fraction", "of the frame time")});
   const tables::RunJson parts = run.part("machine.critical_path.time_ps");
   if (!parts.json().is_object()) {
     return table;

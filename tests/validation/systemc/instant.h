@@ -7,8 +7,8 @@
 //   run in the instant's first delta cycle. A delay of zero takes one more delta cycle and holds back all
 //   turns until it has passed.
 // - A component that is about to use a shared resource asks Turns for leave. Turns gives leave to one
-//   at a time, in the order of docs/internals/model.md: the smallest (turn, node) of those that ask, each time only
-//   after all consequences of the last leave within the instant have happened.
+//   at a time, in the order of docs/internals/model.md: the smallest (turn, node) of those that ask, each
+//   time only after all consequences of the last leave within the instant have happened.
 #pragma once
 
 #include <cstdint>
