@@ -32,7 +32,7 @@ import signal
 import sqlite3
 import sys
 
-FORMATS = (1, 2, 3)
+FORMAT = 4
 POINT_COLUMNS = ("ordinal", "machine", "base", "cost")
 
 
@@ -60,38 +60,30 @@ class Sweep:
             found = int(store.get("format", 0))
         except (sqlite3.Error, ValueError) as error:
             raise SweepError(f"{self.path}: is not the store of a sweep ({error})") from None
-        if found not in FORMATS:
-            raise SweepError(f"{self.path}: is of format {found}, but this reads {', '.join(map(str, FORMATS))}")
+        if found != FORMAT:
+            raise SweepError(f"{self.path}: is of format {found}, but this reads format {FORMAT}")
         self.version = store.get("version", "unknown")
         columns = list(self._database.execute("SELECT name, type FROM pragma_table_info('points')"))
         #: The keys that differ from point to point, as in the configuration; "point" for named points.
         self.axes = [name for name, _ in columns if name not in POINT_COLUMNS]
-        self._flags = {name for name, kind in columns if kind == "BOOLEAN" or kind == "INTEGER" and self._holds_flags(name)}
+        self._flags = {name for name, kind in columns if kind == "BOOLEAN"}
         self._summary = self._names("summary")
         self._counters = [n for n in self._names("results") if n not in ("machine", "checksum", *self._summary)]
-        #: What is known of each figure: a dict with "unit", "meaning" and, if the store has them, "better", "formula".
+        #: What is known of each figure: a dict with "unit", "meaning", "better", "formula".
         self.figures = self._catalogue()
 
     def _names(self, table):
         return [name for (name,) in self._database.execute("SELECT name FROM pragma_table_info(?)", (table,))]
 
-    def _holds_flags(self, key):
-        """Whether a column of integers is one of booleans, as older programs wrote them: by a setting's text."""
-        texts = " UNION ALL ".join(
-            f"SELECT * FROM (SELECT value FROM {table} WHERE key = ? LIMIT 1)" for table in ("machine_settings", "frame_settings")
-        )
-        return any(text in ("true", "false") for (text,) in self._database.execute(texts, (key, key)))
-
     def _catalogue(self):
         names = {"unit": "unit", "description": "meaning", "better": "better", "formula": "formula"}
-        there = [name for name in self._names("columns") if name in names]  # a store of format 2 or 1 says less
         wanted = {*self._summary, *self._counters} - {*POINT_COLUMNS, *self.axes} | {"cost"}
         figures = {}
         for name, *row in self._database.execute(
-            f"SELECT name, {', '.join(there)} FROM columns WHERE \"table\" IN ('summary', 'results')"
+            f"SELECT name, {', '.join(names)} FROM columns WHERE \"table\" IN ('summary', 'results')"
         ):
             if name in wanted:
-                figures[name] = dict(zip((names[each] for each in there), row))
+                figures[name] = dict(zip(names.values(), row))
         return figures
 
     def _column(self, name):

@@ -85,7 +85,6 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
           " neither a lower nor a higher value is better; `marti figures` says of which it is");
     }
   }
-  const std::optional<keys::Prices> prices = keys::read_given_prices(config);
   const sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
   if (arguments.plan_only) {
     if (!options.share || options.share->number == 1) {
@@ -96,13 +95,12 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   if (arguments.directory.empty()) {
     throw sim::UserError("-o DIR is missing: the directory of the sweep's results (--plan needs none)");
   }
-  const sweep::SweepReport report =
-      sweep::run_sweep(plan, options, keys::read_memory(config, sweep::processes_beside()), prices,
-                       [&](const std::string& text) {
-                         if (!arguments.json) {
-                           print(text);
-                         }
-                       });
+  const sweep::SweepReport report = sweep::run_sweep(
+      plan, options, keys::read_memory(config, sweep::processes_beside()), [&](const std::string& text) {
+        if (!arguments.json) {
+          print(text);
+        }
+      });
   if (report.reader == nullptr) {
     if (!arguments.json) {
       print(said(report) + said_of_share(report));
@@ -111,11 +109,11 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   }
   if (arguments.json) {
     print(tables::json_of(arguments.best.empty()
-                              ? report.limited->table
+                              ? sweep::points_table(*report.reader)
                               : sweep::best_points(*report.reader, arguments.best, arguments.budget).front));
     return;
   }
-  std::string text = said(report) + report.limited->text;
+  std::string text = said(report) + sweep::fastest_text(*report.reader);
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {

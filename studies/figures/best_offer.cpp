@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "sim/error.h"
 
@@ -51,6 +52,26 @@ std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better bett
     }
   }
   return front;
+}
+
+std::size_t knee_of(std::span<const Offer> front) {
+  const bool free = front.front().cost <= 0.0;
+  const auto place = [&](const Offer& offer) {
+    return std::pair(free ? offer.cost : std::log(offer.cost), std::log(offer.metric));
+  };
+  const auto [x0, y0] = place(front.front());
+  const auto [x1, y1] = place(front.back());
+  std::size_t best = front.size() - 1;
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const auto [x, y] = place(front[i]);
+    const double depth = x1 > x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) - y : 0.0;
+    if (depth > deepest + 1e-12) {
+      deepest = depth;
+      best = i;
+    }
+  }
+  return best;
 }
 
 }  // namespace marti::studies::figures

@@ -25,4 +25,10 @@ struct Offer {
 /// ascending by cost, so that each is better than the one before. Of equal offers only the first is given.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Offer> offers, Better better);
 
+/// Where more money begins to buy less: of offers as pareto_front() orders them, whose metric is a time, the
+/// index of the one farthest below the line between the first and the last, in logarithms of cost and time. A
+/// cost of 0 has no logarithm, so where the cheapest is free the costs themselves are taken. The last where
+/// none is below the line. `front` is not empty.
+[[nodiscard]] std::size_t knee_of(std::span<const Offer> front);
+
 }  // namespace marti::studies::figures

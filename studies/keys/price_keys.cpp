@@ -1,5 +1,7 @@
 #include "studies/keys/price_keys.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "sim/config_errors.h"
+#include "sim/joined.h"
 #include "sim/mapped.h"
 #include "sim/nearest.h"
 
@@ -58,6 +61,11 @@ Prices read_prices(const sim::Config& config) {
     prices.*key.member = config.real(key.name);
   }
   return prices;
+}
+
+std::string text_of(const Prices& prices) {
+  return sim::joined(sim::mapped(
+      price_keys, [&](const PriceKey& key) { return fmt::format("{} = {}", key.name, prices.*key.member); }));
 }
 
 std::optional<Prices> read_given_prices(const sim::Config& config) {

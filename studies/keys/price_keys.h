@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "sim/config.h"
 #include "sim/schema.h"
@@ -17,5 +18,8 @@ void declare_price_keys(sim::Schema& schema);
 
 /// As read_prices(), if any price is given; else no key is read.
 [[nodiscard]] std::optional<Prices> read_given_prices(const sim::Config& config);
+
+/// "prices.node = 1, prices.bank = 0.5, ...".
+[[nodiscard]] std::string text_of(const Prices& prices);
 
 }  // namespace marti::studies::keys

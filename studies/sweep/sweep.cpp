@@ -18,6 +18,8 @@
 #include "sim/mapped.h"
 #include "studies/host/signals_held.h"
 #include "studies/show/output.h"
+#include "studies/sweep/advise.h"
+#include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/store_parts.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/sweep/sweep_outlook.h"
@@ -103,6 +105,11 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
     const std::size_t tasks = std::max<std::size_t>(1, left.machines_left() + left.frames_left());
     work_together(site, coordinator,
                   static_cast<unsigned>(std::min<std::size_t>(threads_of(options), tasks)));
+    if (!options.share || report.store.filename() == tables::database_name) {
+      advise(
+          plan, *store, limit, [&](std::size_t frame) { return site.log_of(frame); },
+          [&](std::size_t machine, const Advice& advice) { coordinator.advised(machine, advice); });
+    }
   } catch (const sim::UserError& error) {
     clean_up();
     throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
@@ -173,7 +180,6 @@ SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
 }
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-                      const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce) {
   refuse_large_machines(plan, limit);
   const sim::MadeDirectory made = show::prepare_output(options.directory);
@@ -226,8 +232,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
   const host::AtSignal unlocked([&lock](int /*signal*/) { lock.reset(); });
   report.seconds = took();
   report.reader = std::make_unique<const SweepReader>(report.store);
-  report.limited = limits::limited_points(*report.reader, prices);
-  sim::write_file(report.points, tables::csv_of(report.limited->table));
+  sim::write_file(report.points, tables::csv_of(points_table(*report.reader)));
   return report;
 }
 

@@ -9,7 +9,6 @@
 
 #include "sim/config.h"
 #include "sim/memory_budget.h"
-#include "studies/limits/limit_table.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/share.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -38,16 +37,13 @@ struct SweepReport {
   /// Of the store as the sweep has left it; null when other shares are not done yet, or another process has
   /// merged them.
   std::unique_ptr<const SweepReader> reader;
-  std::optional<limits::LimitedPoints> limited;  ///< its points with what limits them
 };
 
 /// Runs the part of the plan that is not in the store yet, nor in its parts, which are merged into it. With a
 /// share only that is timed, in a part of the store, and merged with the others by the process that ends
 /// last. `announce` is called with the plan as text before anything is done. A program that is ended by a
 /// signal says what is saved and exits with 128 + signal. Throws UserError; what is done by then is saved.
-/// `prices` rank what limits points.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-                      const std::optional<keys::Prices>& prices,
                       const std::function<void(const std::string&)>& announce);
 
 }  // namespace marti::studies::sweep

@@ -98,7 +98,9 @@ std::optional<Value> SqliteStatement::get(int column) const {
   const Cell found = cell(column);
   const auto* value = std::get_if<Value>(&found);
   if (value == nullptr && !std::holds_alternative<std::monostate>(found)) {
-    refuse(column, std::is_same_v<Value, std::string> ? ColumnType::text : ColumnType::integer);
+    refuse(column, std::is_same_v<Value, std::string> ? ColumnType::text
+                   : std::is_same_v<Value, double>    ? ColumnType::real
+                                                      : ColumnType::integer);
   }
   return value == nullptr ? std::nullopt : std::optional(*value);
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <sstream>
 #include <string>
@@ -92,6 +93,46 @@ TEST_F(SweepCommand, EachPointIsWhatRunSays) {
     for (const auto& [name, value] : result["figures"]["machine"].items()) {
       EXPECT_EQ(point[name], value) << name << settings;
     }
+  }
+}
+
+// Who takes the step that the sweep names gets the frame that it promises, with a bus and with DRAM.
+TEST_F(SweepCommand, AdviceThatIsFollowedComesTrue) {
+  for (const char* const memory : {"", " --set memory.model=dram --set interconnect.kind=crossbar"}) {
+    const fs::path results = place("followed" + std::string(memory).substr(0, 6));
+    const std::string command = "sweep " + quoted(config) + " -o " + quoted(results) + memory;
+    const json points = printed_json(command + " 2> /dev/null")["rows"];
+    std::size_t followed = 0;
+    for (const json& point : points) {
+      if (point.at("advice_set").is_null()) {
+        continue;
+      }
+      ++followed;
+      std::string settings = memory;
+      for (const char* key : {"image.max_depth", "machine.nodes", "cache.size", "cache.line"}) {
+        settings += std::string(" --set ") + key + "=" + point.at(key).dump();
+      }
+      const auto end_with = [&](const std::string& more) {
+        return printed_json("run --no-what-helps " + quoted(config) + settings +
+                            more)["figures"]["machine"]["end"]
+            .get<double>();
+      };
+      std::string step;
+      std::istringstream each(point["advice_set"].get<std::string>());
+      for (std::string setting; std::getline(each >> std::ws, setting, ';');) {
+        step += " --set '" + setting + "'";
+      }
+      EXPECT_DOUBLE_EQ(end_with(step), std::round(end_with("") * (1.0 - point["advice_saves"].get<double>())))
+          << settings << step;
+      EXPECT_GT(point["advice_saves"], 0.0);
+    }
+    EXPECT_GE(followed, 2U);
+    // The fastest is among them, and the summary says what helps it.
+    const Outcome summary = marti(command + " --quiet");
+    EXPECT_TRUE(says(summary, "\nfastest       "));
+    const auto fastest =
+        std::ranges::min_element(points, {}, [](const json& point) { return point.at("end").get<double>(); });
+    EXPECT_TRUE(says(summary, "\nwhat helps    " + fastest->at("advice").get<std::string>() + "\n"));
   }
 }
 

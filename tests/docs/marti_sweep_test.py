@@ -58,8 +58,8 @@ class TheModule(unittest.TestCase):
         self.assertEqual(len(points), 48)
         self.assertEqual(len(points), len(self.json["rows"]))
         for point, row in zip(points, self.json["rows"]):
-            # What limits a point is predicted by the program; the store does not have it.
-            expected = {name: value for name, value in row.items() if not name.startswith("limit")}
+            # The advice has a table of its own.
+            expected = {name: value for name, value in row.items() if not name.startswith("advice")}
             self.assertEqual(point, expected)
             for name, value in point.items():
                 self.assertEqual(type(value), type(expected[name]), name)
@@ -72,7 +72,7 @@ class TheModule(unittest.TestCase):
         with open(self.out / "points.csv", newline="") as file:
             table = list(csv.DictReader(file))
         self.assertEqual(list(table[0]), list(columns))
-        names = [name for name in columns if not name.startswith("limit")]
+        names = [name for name in columns if not name.startswith("advice")]
         self.assertEqual(self.sweep.names(), names)
         for name, known in self.sweep.figures.items():
             self.assertEqual(known["unit"], columns[name], name)
@@ -126,21 +126,6 @@ class TheModule(unittest.TestCase):
         self.assertEqual(len(lines), 49)
         self.assertTrue(run(sys.executable, "-B", str(MODULE), str(self.out)).startswith("48 points of marti "))
 
-    def test_booleans_in_a_column_of_integers_are_booleans(self):
-        store = pathlib.Path(self.work.name) / "older.sqlite"
-        store.write_bytes((self.out / "results.sqlite").read_bytes())
-        import sqlite3
-        with sqlite3.connect(store) as database:
-            database.execute("PRAGMA writable_schema = ON")
-            database.execute("UPDATE sqlite_schema SET sql = replace(sql, 'BOOLEAN', 'INTEGER') WHERE name = 'points'")
-        database.close()
-        older = marti_sweep.load(store)
-        self.assertEqual(older._database.execute("SELECT type FROM pragma_table_info('points') WHERE name = "
-                                                 "'prefetch.next_line'").fetchall(), [("INTEGER",)])
-        for point, row in zip(older.points(), self.sweep.points(), strict=True):
-            self.assertEqual({name: (type(value), value) for name, value in point.items()},
-                             {name: (type(value), value) for name, value in row.items()})
-
     def test_one_point_is_one(self):
         config = pathlib.Path(self.work.name) / "one.toml"
         config.write_text(CONFIG.split("[sweep.axes]")[0] + "[sweep.axes]\nmachine.nodes = [2]\n")
@@ -155,7 +140,7 @@ class TheModule(unittest.TestCase):
         with sqlite3.connect(store) as database:
             database.execute("UPDATE store SET value = '99' WHERE what = 'format'")
         database.close()
-        with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads 1, 2, 3"):
+        with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads format 4"):
             marti_sweep.load(store)
 
     def test_plots_a_line_for_each_value(self):

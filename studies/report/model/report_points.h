@@ -34,7 +34,7 @@ struct ReportPoint {
   std::vector<std::size_t> place;                      ///< for each axis the index of its value
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
   std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
-  std::string limit;                                   ///< what would help it (studies/limits); may be empty
+  std::string advice;                                  ///< what would help it, measured; may be empty
   bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar,
   bool banks_are_queues = false;                       ///< and it is not held while a bank works
 

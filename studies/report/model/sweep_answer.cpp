@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -17,30 +16,6 @@ namespace marti::studies::report {
 namespace {
 
 double price_of(const ReportPoint& point) { return point.figure("price"); }
-
-// The point of the front farthest below the line between its ends, in logarithms of price and time. A price
-// of 0 has no logarithm, so where the cheapest machine is free the prices themselves are taken.
-std::size_t knee_of(const ReportPoints& sweep, const std::vector<std::size_t>& front) {
-  const bool free = price_of(sweep.points[front.front()]) <= 0.0;  // the cheapest
-  const auto place = [&](std::size_t i) {
-    const ReportPoint& point = sweep.points[i];
-    const double price = price_of(point);
-    return std::pair(free ? price : std::log(price), std::log(point.figure("end")));
-  };
-  const auto [x0, y0] = place(front.front());
-  const auto [x1, y1] = place(front.back());
-  std::size_t best = front.back();
-  double deepest = 0.0;
-  for (const std::size_t i : front) {
-    const auto [x, y] = place(i);
-    const double depth = x1 > x0 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0) - y : 0.0;
-    if (depth > deepest + 1e-12) {
-      deepest = depth;
-      best = i;
-    }
-  }
-  return best;
-}
 
 // What a step up or down on each axis gains, the best first; steps that gain nothing are left out.
 struct Advice {
@@ -116,8 +91,13 @@ std::string speed_text(const ReportPoint& point) {
                      point.figure("speed_up"), 100.0 * point.figure("efficiency"));
 }
 
+struct Front {
+  std::vector<std::size_t> points;
+  std::vector<figures::Offer> offers;  // of each of them
+};
+
 // Of the points of this frame that have the figure, those that no other beats in it and in frame time.
-std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view figure, std::size_t frame) {
+Front front_by(const ReportPoints& sweep, std::string_view figure, std::size_t frame) {
   std::vector<figures::Offer> offers;
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < sweep.points.size(); ++i) {
@@ -127,9 +107,10 @@ std::vector<std::size_t> front_by(const ReportPoints& sweep, std::string_view fi
       offered.push_back(i);
     }
   }
-  std::vector<std::size_t> front = figures::pareto_front(offers, figures::Better::lower);
-  for (std::size_t& i : front) {
-    i = offered[i];
+  Front front;
+  for (const std::size_t i : figures::pareto_front(offers, figures::Better::lower)) {
+    front.points.push_back(offered[i]);
+    front.offers.push_back(offers[i]);
   }
   return front;
 }
@@ -141,10 +122,11 @@ Chosen choose(const ReportPoints& sweep, std::optional<double> budget) {
       sweep.points,
       [](const ReportPoint& a, const ReportPoint& b) { return a.figure("end") < b.figure("end"); });
   Chosen chosen;
-  chosen.front = front_by(sweep, "price", shortest->frame);
-  chosen.energy_front = front_by(sweep, "energy", shortest->frame);
+  const Front by_price = front_by(sweep, "price", shortest->frame);
+  chosen.front = by_price.points;
+  chosen.energy_front = front_by(sweep, "energy", shortest->frame).points;
   chosen.fastest = chosen.front.back();
-  chosen.knee = knee_of(sweep, chosen.front);
+  chosen.knee = chosen.front[figures::knee_of(by_price.offers)];
   chosen.budget = budget;
   for (const std::size_t i : chosen.front) {  // ascending by price: each is faster than the one before
     if (budget && price_of(sweep.points[i]) <= *budget) {
@@ -169,9 +151,9 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
   const auto compared = static_cast<std::size_t>(std::ranges::count_if(
       sweep.points, [&](const ReportPoint& point) { return point.frame == fastest.frame; }));
   std::vector<std::string> answer;
-  const auto add_limit = [&](const char* begin, const ReportPoint& point) {
-    if (!point.limit.empty()) {
-      answer.push_back(fmt::format("{}: {}.", begin, point.limit));
+  const auto add_advice = [&](const char* begin, const ReportPoint& point) {
+    if (!point.advice.empty()) {
+      answer.push_back(fmt::format("{}: {}.", begin, point.advice));
     }
   };
   answer.push_back(fmt::format(
@@ -185,7 +167,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         "the shortest time are compared here{}.",
         sweep.frames, frame_text(sweep, fastest.frame)));
   }
-  add_limit("What would help it, predicted", fastest);
+  add_advice("What would help it, measured", fastest);
   if (chosen.knee != chosen.fastest) {
     const double time = knee.figure("end") / fastest.figure("end");
     const double price = price_of(knee) / price_of(fastest);  // dearer than the knee: above 0
@@ -195,7 +177,7 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
                     "{:.2f} times the time of the fastest for {:.1f} % of its price: {}.",
                     chosen.front.size(), tables::computed_seconds(knee.figure("end")), speed_text(knee), unit,
                     price_of(knee), time, 100.0 * price, place_text(sweep, knee)));
-    add_limit("What would help that one, predicted", knee);
+    add_advice("What would help that one, measured", knee);
   }
   if (chosen.within) {
     const ReportPoint& within = sweep.points[*chosen.within];

@@ -167,14 +167,14 @@ tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
        tables::real_column("frame_time", "ms", "from its start until the last node is done"),
        tables::real_column("speed_up", "1", "over the base machine"),
        tables::real_column("efficiency", "fraction", "speed-up by the number of nodes"),
-       tables::text_column("limit", "what would help it, predicted (docs/sweep.md)")});
+       tables::text_column("advice", "what would help it, measured by replays of changed machines")});
   for (const std::size_t i : chosen.front) {
     const ReportPoint& point = sweep.points[i];
     const auto cell = [&](const char* name) {
       return point.has(name) ? tables::Cell(point.figure(name)) : tables::Cell();
     };
     table.add_row({point.ordinal, place_text(sweep, point), point.figure("price"), point.figure("end") * 1e-9,
-                   cell("speed_up"), cell("efficiency"), point.limit});
+                   cell("speed_up"), cell("efficiency"), point.advice});
   }
   return table;
 }

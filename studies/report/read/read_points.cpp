@@ -9,7 +9,6 @@
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
-#include "studies/limits/stored_limits.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/read/axis_order.h"
@@ -23,9 +22,6 @@ namespace {
 
 // What a browser can be given as one page, and a person as one chart.
 constexpr std::size_t most_points = 20'000;
-
-// No time and no count of a simulation is above it; sums and rounding stay clear of 64 bits.
-constexpr double most = 0x1p62;
 
 constexpr std::string_view counters[] = {"end",
                                          "cost",
@@ -75,77 +71,15 @@ std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
   return names;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& store, std::int64_t ordinal, const std::string& what) {
-  throw sim::UserError(
-      fmt::format("{}: point {}: {}; the store is damaged or was changed: remove it and run the sweep again",
-                  store.string(), ordinal, what));
-}
-
-std::string shown(const tables::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    constexpr std::size_t longest = 40;
-    return "\"" + text->substr(0, longest) + "\"";
-  }
-  const std::optional<double> number = tables::number_of(cell);
-  return number ? fmt::format("{:g}", *number) : "missing";
-}
-
-// Refuses a point with figures outside the range in which the page and its model can calculate.
-void check_point(const std::filesystem::path& store, const sweep::StoredPoint& point,
-                 std::span<const std::string> axes) {
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const tables::Cell& value = point.values[i];
-    const std::optional<double> number = tables::number_of(value);
-    if (std::holds_alternative<std::monostate>(value)) {
-      refuse(store, point.ordinal, "its value of axis " + axes[i] + " is missing");
-    }
-    if (number && !(std::abs(*number) <= 0x1p63)) {
-      refuse(store, point.ordinal,
-             fmt::format("its value of axis {} is {}, out of range", axes[i], shown(value)));
-    }
-  }
-}
-
-void check_figure(const std::filesystem::path& store, std::int64_t ordinal, std::string_view name,
-                  const tables::Cell& cell) {
-  const bool needed = name == "end" || name == "cost" || name == "nodes";
-  if (std::holds_alternative<std::monostate>(cell) && !needed) {
-    return;  // the machine has no such part
-  }
-  if (name == "end" && cell == tables::Cell(std::int64_t{0})) {
-    throw sim::UserError(
-        fmt::format("{}: point {}: the frame takes no time on this machine, so there is nothing to report; "
-                    "leave the point out",
-                    store.string(), ordinal));
-  }
-  const double least = name == "end" || name == "nodes" ? 1.0 : 0.0;
-  const std::optional<double> number = tables::number_of(cell);
-  const bool whole = name != "end" || std::holds_alternative<std::int64_t>(cell);
-  if (!number || !whole || !(*number >= least && *number <= most)) {
-    refuse(store, ordinal,
-           fmt::format("its {} is {}; expected is {} from {:.0f} to 2^62", name, shown(cell),
-                       name == "end" ? "an integer" : "a number", least));
-  }
-}
-
-// Points are told apart by their values: as texts, and as numbers where a chart has them on an axis of
-// numbers.
-void check_places(const std::filesystem::path& store, const ReportPoints& sweep) {
-  std::map<std::vector<std::size_t>, std::int64_t> seen;
-  for (const ReportPoint& point : sweep.points) {
-    const auto [at, fresh] = seen.emplace(point.place, point.ordinal);
-    if (!fresh) {
-      refuse(store, point.ordinal, fmt::format("it has the same values as point {}", at->second));
-    }
-    for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
-      const ReportAxis& axis = sweep.axes[i];
-      const std::size_t place = point.place[i];
-      if (axis.numeric && place > 0 && !(axis.number(place) > axis.number(place - 1))) {
+// Two values of a chart's axis may be the same number once they are shown with a chart's digits.
+void check_axes(const std::filesystem::path& store, const ReportPoints& sweep) {
+  for (const ReportAxis& axis : sweep.axes) {
+    for (std::size_t value = 1; axis.numeric && value < axis.values.size(); ++value) {
+      if (!(axis.number(value) > axis.number(value - 1))) {
         throw sim::UserError(
-            fmt::format("{}: point {}: axis {} has two values that are the same number with the digits that "
-                        "a page can show, "
-                        "{}; leave one of them out",
-                        store.string(), point.ordinal, axis.name, axis.texts[place]));
+            fmt::format("{}: axis {} has two values that are the same number with the digits that a page can "
+                        "show, {}; leave one of them out",
+                        store.string(), axis.name, axis.texts[value]));
       }
     }
   }
@@ -201,17 +135,6 @@ class Frames {
   const sweep::SweepReader& reader_;
   std::map<std::string, std::size_t> numbers_;
 };
-
-// A machine's settings by key: every machine has some.
-std::map<std::string, std::string> settings_of(const sweep::SweepReader& reader,
-                                               const std::filesystem::path& store, std::int64_t ordinal,
-                                               std::int64_t machine) {
-  const std::vector<std::pair<std::string, std::string>> settings = reader.settings(machine);
-  if (settings.empty()) {
-    refuse(store, ordinal, fmt::format("its machine {} is not in the store", machine));
-  }
-  return {settings.begin(), settings.end()};
-}
 
 // Collects the settings that all machines of the sweep share, and notes for each point what its queues are.
 class Settings {
@@ -283,12 +206,9 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   Frames frames(reader);
   reader.for_each_point(names, [&](const sweep::StoredPoint& stored, std::span<const tables::Cell> cells) {
     ++sweep.planned;
-    const std::map<std::string, std::string> by_key =
-        settings_of(reader, store, stored.ordinal, stored.machine);
     if (!stored.done) {
       return;
     }
-    check_point(store, stored, reader.axes());
     if (sweep.points.size() == most_points) {
       throw sim::UserError(
           fmt::format("{}: has more than {} timed points, too many for one page; time a part of "
@@ -301,12 +221,18 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     point.machine = stored.machine;
     point.cost = stored.cost;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      check_figure(store, stored.ordinal, names[i], cells[i]);
       if (const std::optional<double> number = tables::number_of(cells[i])) {
         point.figures[names[i]] = *number;
       }
     }
-    settings.add(point, by_key);
+    if (point.figure("end") <= 0.0) {
+      throw sim::UserError(
+          fmt::format("{}: point {}: the frame takes no time on this machine, so there is nothing to report; "
+                      "leave the point out",
+                      store.string(), stored.ordinal));
+    }
+    const std::vector<std::pair<std::string, std::string>> own = reader.settings(stored.machine);
+    settings.add(point, {own.begin(), own.end()});
     sweep.points.push_back(std::move(point));
     values.push_back(stored.values);
   });
@@ -329,17 +255,17 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     }
     sweep.axes.push_back(make_axis(column));
   }
-  check_places(store, sweep);
+  check_axes(store, sweep);
   sweep.settings = settings.shared();
   sweep.priced = std::ranges::any_of(
       sweep.points, [&](const ReportPoint& point) { return point.cost != sweep.points.front().cost; });
   for (ReportPoint& point : sweep.points) {
     point.figures["price"] = sweep.priced ? point.cost : point.figure("nodes");
   }
-  const limits::StoredLimits limits(reader);
-  for (const std::size_t i : choose(sweep).front) {
-    if (const std::optional<limits::PointLimit> limit = limits.at(sweep.points[i].ordinal)) {
-      sweep.points[i].limit = limit->sentence();
+  const std::map<std::int64_t, sweep::Advice> advice = reader.advice();
+  for (ReportPoint& point : sweep.points) {
+    if (const auto measured = advice.find(point.machine); measured != advice.end()) {
+      point.advice = measured->second.sentence;
     }
   }
   sweep.provenance = {{"version of marti", sweep.version},

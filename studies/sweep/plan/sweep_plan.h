@@ -10,6 +10,7 @@
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
 #include "studies/keys/frame_keys.h"
+#include "studies/keys/machine_cost.h"
 #include "studies/sweep/plan/shared_settings.h"
 
 namespace marti::studies::sweep {
@@ -68,6 +69,7 @@ struct SweepPlan {
   std::vector<SweepPoint> points;      ///< that pass the filter; the last axis changes fastest
   std::uint64_t filtered_out = 0;      ///< points that do not pass
   std::optional<std::size_t> compare;  ///< the machine that all are compared with
+  std::optional<keys::Prices> prices;  ///< if any is given; they rank what would help
 
   std::vector<SweepDirection> directions;  ///< all are crossed, the last changes fastest
   std::vector<SkippedPoint> skipped;       ///< only with sweep.skip_invalid

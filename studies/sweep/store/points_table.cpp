@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <span>
 #include <utility>
@@ -103,7 +104,45 @@ tables::Table table_of(std::string name, std::string title, std::span<const std:
 
 tables::Table points_table(const SweepReader& reader) {
   const std::vector<std::string>& names = reader.figures();
-  return table_of("points", "Points of the sweep", names, rows_of(reader, names));
+  tables::Table table = table_of("points", "Points of the sweep", names, rows_of(reader, names));
+  const std::map<std::int64_t, Advice> advice = reader.advice();
+  const std::size_t machine = table.column("machine");
+  const std::array<tables::Column, 3> columns = {
+      {tables::text_column("advice", "what would help the machine most, measured for those that matter"),
+       tables::text_column("advice_set", "the settings of that step, as for --set"),
+       tables::real_column("advice_saves", "fraction", "of the frame time that it saves")}};
+  table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {
+    const auto found = advice.find(std::get<std::int64_t>(row[machine]));
+    if (found == advice.end()) {
+      return std::vector<tables::Cell>(columns.size());
+    }
+    const auto& [sentence, settings, saves] = found->second;
+    return {sentence, settings.empty() ? tables::Cell() : settings, saves};
+  });
+  return table;
+}
+
+std::string fastest_text(const SweepReader& reader) {
+  const std::map<std::int64_t, Advice> advice = reader.advice();
+  const std::vector<std::string>& axes = reader.axes();
+  std::optional<std::pair<double, double>> least;  // of frame time and cost
+  std::string text;
+  const std::vector<std::string> figures = {"end"};
+  reader.for_each_point(figures, [&](const StoredPoint& point, std::span<const tables::Cell> cells) {
+    const auto found = advice.find(point.machine);
+    const std::optional<double> end = tables::number_of(cells[0]);
+    if (found == advice.end() || !end || (least && *least <= std::pair(*end, point.cost))) {
+      return;
+    }
+    least = {*end, point.cost};
+    text = fmt::format("fastest       {} at a cost of {:g}", tables::figure_text(cells[0], "ps", "-"),
+                       point.cost);
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      text += (axis == 0 ? ": " : ", ") + axes[axis] + " = " + axis_text(axes[axis], point.values[axis]);
+    }
+    text += "\nwhat helps    " + found->second.sentence + "\n";
+  });
+  return text;
 }
 
 BestPoints best_points(const SweepReader& reader, const std::string& metric, std::optional<double> budget) {

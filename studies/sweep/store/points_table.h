@@ -14,6 +14,10 @@ namespace marti::studies::sweep {
 /// or false is a boolean.
 [[nodiscard]] tables::Table points_table(const SweepReader& reader);
 
+/// The fastest machine of those with advice, and what would help it, as lines for people; empty where none
+/// has advice.
+[[nodiscard]] std::string fastest_text(const SweepReader& reader);
+
 /// Which points are worth their price.
 struct BestPoints {
   /// "best": the points that no other beats in cost and metric, ascending by cost; its last column marks the

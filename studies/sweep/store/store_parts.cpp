@@ -93,9 +93,9 @@ void DoneKeys::add(const fs::path& store) {
   }
   tables::SqliteConnection connection(store, tables::SqliteConnection::Access::read);
   connection.execute("BEGIN");  // from here on all reads are of one instant
-  const std::int64_t format = check_store_format(connection, store);
+  check_store_format(connection, store);
   check_store_version(connection, store);
-  check_whole(connection, store, format);
+  check_whole(connection, store);
   add_keys(connection, "SELECT key FROM machines WHERE id IN (SELECT machine FROM results)", machines);
   add_keys(connection, "SELECT key FROM frames WHERE id IN (SELECT frame FROM frame_results)", frames);
 }

@@ -11,6 +11,7 @@
 #include "sim/error.h"
 #include "sim/joined.h"
 #include "sim/mapped.h"
+#include "studies/keys/price_keys.h"
 #include "studies/sweep/store/store_schema.h"
 #include "studies/version.h"
 
@@ -172,6 +173,8 @@ void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& pla
   tables::SqliteStatement insert(connection, tables::insert_sql("provenance", 2));
   insert.run({"version", version});
   insert.run({"axes", sim::joined(plan.axes)});
+  // They rank what would help, so that other prices give another plan.
+  insert.run({"prices", plan.prices ? keys::text_of(*plan.prices) : std::string()});
   insert.run({"points", std::to_string(plan.points.size())});
   insert.run({"filtered_out", std::to_string(plan.filtered_out)});
   insert.run({"machines", std::to_string(plan.machines.size())});

@@ -20,7 +20,7 @@ namespace marti::studies::sweep {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 3;                // 1: without checksums; 2: columns say less of figures
+constexpr std::int64_t format = 4;                // up to 3: without advice
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -48,6 +48,8 @@ CREATE TABLE wait_buckets (machine INTEGER NOT NULL, wait INTEGER NOT NULL, lowe
                            highest INTEGER, count INTEGER NOT NULL,
                            PRIMARY KEY (machine, wait, lowest)) WITHOUT ROWID;
 CREATE TABLE compare (machine INTEGER NOT NULL);
+CREATE TABLE advice (machine INTEGER PRIMARY KEY, sentence TEXT NOT NULL, settings TEXT NOT NULL, saves REAL,
+                     checksum INTEGER);
 CREATE TABLE host_sessions (id INTEGER PRIMARY KEY, began TEXT NOT NULL, ended TEXT, host TEXT NOT NULL,
                             process INTEGER NOT NULL, processor TEXT NOT NULL, system TEXT NOT NULL,
                             threads TEXT NOT NULL);
@@ -146,18 +148,18 @@ std::optional<std::string> value_of(tables::SqliteConnection& connection, const 
   return connection.value<std::string>("SELECT value FROM store WHERE what = '" + what + "'");
 }
 
-std::int64_t check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file) {
+void check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file) {
   if (connection.value<std::int64_t>("PRAGMA application_id") != application) {
     throw sim::UserError(file.string() + ": is a database, but not the store of a sweep" +
                          std::string(what_to_do));
   }
   const std::int64_t found = connection.value<std::int64_t>("PRAGMA user_version").value_or(0);
-  if (found < 1 || found > format || value_of(connection, "format") != std::to_string(found)) {
+  if (found != format || value_of(connection, "format") != std::to_string(found)) {
     throw sim::UserError(file.string() + ": is a store of format " + std::to_string(found) +
-                         ", but this program reads formats 1 to " + std::to_string(format) +
-                         "; use the program that wrote it, give another directory, or remove the file");
+                         ", but this program reads format " + std::to_string(format) +
+                         "; use the program that wrote it, give another directory, or remove the file and "
+                         "run the sweep again");
   }
-  return found;
 }
 
 void check_store_version(tables::SqliteConnection& connection, const std::filesystem::path& file) {
@@ -167,10 +169,8 @@ void check_store_version(tables::SqliteConnection& connection, const std::filesy
                          std::string(version) + ", whose results could differ; use version " + found +
                          ", give another directory, or remove the file and run the sweep again");
   }
-  // Stores of older formats can be read but not written. The build holds a hash of the sources, because a
-  // program that was changed may give other results.
-  if (connection.value<std::int64_t>("PRAGMA user_version") != format ||
-      value_of(connection, "build") != host::build_of_program() ||
+  // The build holds a hash of the sources, because a program that was changed may give other results.
+  if (value_of(connection, "build") != host::build_of_program() ||
       !has_columns(connection, "results", first_result_counter, figures::counted_figures()) ||
       !has_columns(connection, "frame_results", first_frame_counter, run::frame_figures())) {
     throw sim::UserError(file.string() + ": was written by another build of version " + found +

@@ -25,11 +25,10 @@ const std::filesystem::path& check_store_file(const std::filesystem::path& file)
 [[nodiscard]] std::optional<std::string> value_of(tables::SqliteConnection& connection,
                                                   const std::string& what);
 
-/// Its format. Throws UserError unless the database is a store of one that this program reads.
-std::int64_t check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file);
+/// Throws UserError unless the database is a store of the format that this program reads.
+void check_store_format(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
-/// Throws UserError unless this program may add results to the store: it must be of this version and of the
-/// newest format.
+/// Throws UserError unless this program may add results to the store: it must be of this version.
 void check_store_version(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
 /// Makes the tables that stay. Within a transaction.

@@ -114,19 +114,16 @@ void seal_plan(tables::SqliteConnection& connection) {
       .run({sum_of_plan(connection)});
 }
 
-void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file,
-                 std::int64_t format) {
+void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file) {
   if (const auto found = connection.value<std::string>("PRAGMA integrity_check(1)"); found != "ok") {
     fail(file, found.value_or("it cannot be checked"));
-  }
-  if (format == 1) {
-    return;
   }
   if (value_of(connection, "checksum") != sum_of_plan(connection)) {
     fail(file, "its plan does not match its checksum");
   }
   RowSums(connection, machine_results).check(file);
   RowSums(connection, frame_results).check(file);
+  RowSums(connection, advice_rows).check(file);
 }
 
 }  // namespace marti::studies::sweep

@@ -21,6 +21,9 @@ inline constexpr ResultTable machine_results = {
     "SELECT wait, lowest, highest, count FROM wait_buckets WHERE machine = ? ORDER BY wait, lowest"};
 inline constexpr ResultTable frame_results = {
     "frame_results", "frame", "SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"};
+/// Nothing belongs to what would help a machine.
+inline constexpr ResultTable advice_rows = {"advice", "machine",
+                                            "SELECT 0 FROM advice WHERE machine = ? AND 0"};
 
 /// The checksums of one table of results. Each covers the values of a row as they stand in the store, with
 /// their types, and what belongs to the row. So a program that has other counters can check a store, too.
@@ -49,8 +52,7 @@ class RowSums {
 void seal_plan(tables::SqliteConnection& connection);
 
 /// Throws UserError when the store is damaged: when its pages do not fit together (PRAGMA integrity_check),
-/// or a checksum is not that of the values. A store of format 1 has no checksums.
-void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file,
-                 std::int64_t format);
+/// or a checksum is not that of the values.
+void check_whole(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
 }  // namespace marti::studies::sweep

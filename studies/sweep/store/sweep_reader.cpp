@@ -49,7 +49,8 @@ SweepReader::SweepReader(const std::filesystem::path& file)
     throw sim::UserError(file.string() +
                          ": holds nothing: the sweep was ended before its plan was saved; run it again");
   }
-  check_whole(connection_, file, check_store_format(connection_, file));
+  check_store_format(connection_, file);
+  check_whole(connection_, file);
   version_ = value_of(connection_, "version").value_or("unknown");
   rows_.emplace(connection_);
   settings_.emplace(connection_,
@@ -116,6 +117,15 @@ std::vector<std::pair<std::string, std::string>> SweepReader::settings(std::int6
     settings.emplace_back(settings_->text(0), settings_->text(1));
   }
   return settings;
+}
+
+std::map<std::int64_t, Advice> SweepReader::advice() const {
+  std::map<std::int64_t, Advice> all;
+  tables::SqliteStatement rows(connection_, "SELECT machine, sentence, settings, saves FROM advice");
+  while (rows.next()) {
+    all[rows.integer(0)] = {rows.text(1), rows.text(2), rows.get<double>(3)};
+  }
+  return all;
 }
 
 void SweepReader::for_each_point(

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,14 @@ struct StoredPoint {
   double cost = 0.0;
   bool done = false;                 ///< its machine's result is there
   std::vector<tables::Cell> values;  ///< one for each of SweepReader::axes()
+};
+
+/// What would help a machine most, measured by replays of changed machines.
+struct Advice {
+  std::string sentence;  ///< for people, without a full stop
+  /// The settings that make the step, each as for --set, between them "; ". Empty where nothing helps.
+  std::string settings;
+  std::optional<double> saves;  ///< share of the frame time that the step saves
 };
 
 /// False when the file is missing or empty, as a sweep that was killed at once leaves it.
@@ -55,6 +64,9 @@ class SweepReader {
   [[nodiscard]] std::optional<FrameRow> read_frame(std::int64_t machine) const;
   /// Keys and values of a machine and of its frame, sorted by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
+
+  /// By the ids of machines: of the fastest and others that no other beats, once the sweep has ended.
+  [[nodiscard]] std::map<std::int64_t, Advice> advice() const;
 
   /// The names of all figures of a point: axes, cost, what is derived (view summary), and all counters.
   [[nodiscard]] const std::vector<std::string>& figures() const { return figures_; }

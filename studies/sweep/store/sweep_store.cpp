@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <ctime>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "sim/error.h"
@@ -27,17 +28,21 @@ SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan,
   connection_.emplace(check_store_file(file), tables::SqliteConnection::Access::write);
   const bool is_new = is_empty_database(*connection_);
   if (!is_new) {
-    const std::int64_t format = check_store_format(*connection_, file);
+    check_store_format(*connection_, file);
     check_store_version(*connection_, file);
-    check_whole(*connection_, file, format);
+    check_whole(*connection_, file);
   }
   begin_log();
   connection_->transact([&] {
     if (is_new) {
       create_store(*connection_);
     }
+    const std::optional<std::string> plan_before = value_of(*connection_, "checksum");
     ids_ = enter_plan(*connection_, plan);
     seal_plan(*connection_);
+    if (value_of(*connection_, "checksum") != plan_before) {
+      connection_->execute("DELETE FROM advice");  // other machines may matter now, or cost something else
+    }
     begin_session();
   });
   writer_.emplace(*connection_);
@@ -104,6 +109,30 @@ void SweepStore::add_result(std::size_t machine, const SweepRow& row, std::int64
     writer_->add(id, row);
     add_cost("host_machines", id, cpu_nanoseconds);
   });
+}
+
+void SweepStore::add_advice(std::size_t machine, const Advice& advice) {
+  const std::int64_t id = ids_.machines.at(machine);
+  connection_->transact([&] {
+    tables::SqliteStatement(*connection_, tables::insert_sql("advice", 5))
+        .run({id, advice.sentence, advice.settings, advice.saves, tables::Cell()});
+    RowSums(*connection_, advice_rows).seal(id);
+  });
+}
+
+std::vector<bool> SweepStore::advised() { return done("SELECT machine FROM advice", ids_.machines); }
+
+std::vector<std::int64_t> SweepStore::sums(const std::string& sql) {
+  std::unordered_map<std::int64_t, std::int64_t> by_id;
+  tables::SqliteStatement rows(*connection_, "SELECT machine, " + sql + " FROM results");
+  while (rows.next()) {
+    by_id[rows.integer(0)] = rows.integer(1);
+  }
+  return sim::mapped(ids_.machines, [&](const std::int64_t id) { return by_id.at(id); });
+}
+
+std::optional<FrameRow> SweepStore::find_frame(std::size_t frame) {
+  return reader_->find_frame(ids_.frames.at(frame));
 }
 
 void SweepStore::add_cost(const std::string& table, std::int64_t id, std::int64_t cpu_nanoseconds) {

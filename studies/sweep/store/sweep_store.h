@@ -12,6 +12,7 @@
 #include "studies/sweep/store/store_lock.h"
 #include "studies/sweep/store/store_plan.h"
 #include "studies/sweep/store/store_rows.h"
+#include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::sweep {
@@ -37,6 +38,17 @@ class SweepStore {
   // so it goes to tables of its own.
   void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
+
+  /// What would help a machine of the plan, which has none yet. It is committed when this returns. A plan
+  /// that differs from the one before begins without advice.
+  void add_advice(std::size_t machine, const Advice& advice);
+  /// For each machine of the plan: has it advice?
+  [[nodiscard]] std::vector<bool> advised();
+
+  /// For each machine of the plan, all of which are done, the value of an integer expression of counters.
+  [[nodiscard]] std::vector<std::int64_t> sums(const std::string& sql);
+  /// The row of a frame of the plan, if it is there.
+  [[nodiscard]] std::optional<FrameRow> find_frame(std::size_t frame);
 
   /// Takes what a part of this store (store_parts.h) has of the plan's machines and the store has not, in one
   /// transaction, and removes the part, unless it has results that no plan of the store has asked for. Throws

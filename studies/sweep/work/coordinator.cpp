@@ -51,6 +51,11 @@ void Coordinator::timed(std::size_t machine, const SweepRow& row, std::int64_t c
   tell_if_over(lock, frame);
 }
 
+void Coordinator::advised(std::size_t machine, const Advice& advice) {
+  const std::lock_guard lock(mutex_);
+  store_.add_advice(machine, advice);
+}
+
 // Calls over_() without the lock: when a signal ends the program, removing a file waits for ever, and
 // close_for_good(), which takes the lock, must not wait for that.
 void Coordinator::tell_if_over(std::unique_lock<std::mutex>& lock, std::size_t frame) {

@@ -30,6 +30,8 @@ class Coordinator : public TaskSource {
   void traced(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) override;
   void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) override;
   void stop() override;
+  /// Saves what would help a machine (SweepStore::add_advice).
+  void advised(std::size_t machine, const Advice& advice);
   /// As Schedule::nanoseconds_left.
   [[nodiscard]] std::int64_t nanoseconds_left();
   /// Machines of the plan that are saved.

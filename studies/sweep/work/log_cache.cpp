@@ -21,7 +21,6 @@ struct Entry {
   std::uint64_t users = 0;
   std::uint64_t last_used = 0;
   bool tracing = false;
-  bool dropped = false;
 };
 
 }  // namespace
@@ -64,15 +63,6 @@ class LogCache::Entries : public std::enable_shared_from_this<Entries> {
     entry->last_used = ++clock_;
     return {entry->log.get(),
             [table = shared_from_this(), entry](const FrameLog*) { table->give_back(*entry); }};
-  }
-
-  void drop(std::size_t frame) {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = entries_.find(frame); found != entries_.end()) {
-      found->second->dropped = true;
-      forget_if_idle(*found->second);
-      entries_.erase(found);
-    }
   }
 
   std::uint64_t in_memory() {
@@ -158,13 +148,7 @@ class LogCache::Entries : public std::enable_shared_from_this<Entries> {
     const std::lock_guard lock(mutex_);
     if (--entry.users == 0) {
       pinned_ -= entry.bytes;
-      forget_if_idle(entry);
       changed_.notify_all();
-    }
-  }
-  void forget_if_idle(Entry& entry) {
-    if (entry.dropped && entry.log && entry.users == 0) {
-      forget(entry);
     }
   }
   void forget(Entry& entry) {
@@ -176,7 +160,7 @@ class LogCache::Entries : public std::enable_shared_from_this<Entries> {
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
   std::map<std::size_t, EntryPointer> entries_;
-  std::uint64_t in_memory_ = 0;  // bytes of logs, also of those that were dropped but are in use
+  std::uint64_t in_memory_ = 0;  // bytes of logs
   std::uint64_t pinned_ = 0;     // of them, those in use or being traced again
   std::uint64_t clock_ = 0;
 };
@@ -188,7 +172,6 @@ void LogCache::put(std::size_t frame, FrameLog log) { table_->put(frame, std::mo
 std::shared_ptr<const FrameLog> LogCache::take(std::size_t frame, const Trace& trace) {
   return table_->take(frame, trace);
 }
-void LogCache::drop(std::size_t frame) { table_->drop(frame); }
 std::uint64_t LogCache::in_memory() const { return table_->in_memory(); }
 
 }  // namespace marti::studies::sweep

@@ -42,8 +42,6 @@ class LogCache {
   /// frame. If the log would exceed the limit, waits until other threads release theirs, so the calling
   /// thread must not hold a log. Throws what `trace` throws.
   [[nodiscard]] std::shared_ptr<const FrameLog> take(std::size_t frame, const Trace& trace);
-  /// Says that nobody will take the log again: its memory is freed when its last user lets go.
-  void drop(std::size_t frame);
 
   /// Bytes of the logs in memory and of those being traced again.
   [[nodiscard]] std::uint64_t in_memory() const;

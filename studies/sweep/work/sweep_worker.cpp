@@ -83,8 +83,7 @@ processors::replay::MachineResult replay(SweepSite& site, const SweepTask& task,
 }
 
 void do_time(SweepSite& site, TaskSource& source, const SweepTask& task) {
-  const std::shared_ptr<const FrameLog> log =
-      site.logs.take(task.frame, [&] { return trace(site, site.plan.frames[task.frame]); });
+  const std::shared_ptr<const FrameLog> log = site.log_of(task.frame);
   std::optional<std::size_t> timing;  // of `result`
   processors::replay::MachineResult result;
   for (const std::size_t number : task.machines) {
@@ -131,6 +130,10 @@ void take_tasks(SweepSite& site, TaskSource& source) {
 }
 
 }  // namespace
+
+std::shared_ptr<const FrameLog> SweepSite::log_of(std::size_t frame) {
+  return logs.take(frame, [&] { return trace(*this, plan.frames[frame]); });
+}
 
 void work_together(SweepSite& site, TaskSource& source, unsigned workers) {
   std::mutex mutex;

@@ -23,11 +23,11 @@ struct SweepSite {
         strips(budget.limit() / 4),
         machines(budget.limit() - budget.limit() / 2 - budget.limit() / 4) {}
 
-  /// Says that nobody needs that frame's logs any more.
-  void drop(std::size_t frame) {
-    strips.drop(frame);
-    logs.drop(frame);
-  }
+  /// The log of a frame, traced if it is not in memory.
+  [[nodiscard]] std::shared_ptr<const FrameLog> log_of(std::size_t frame);
+
+  /// Says that no machine is timed on that frame any more.
+  void drop(std::size_t frame) { strips.drop(frame); }
 
   const SweepPlan& plan;
   sim::MemoryBudget memory;

@@ -76,23 +76,14 @@ RC_GTEST_PROP(LogCache, GivesTheLogOfEachFrame, (std::uint64_t seed)) {
   LogCache cache(most);
   for (int step = 0; step < 40; ++step) {
     const std::size_t i = random() % frames.size();
-    switch (random() % 4) {
-      case 0:
-        cache.put(i, copy_of(frames[i]));
-        break;
-      case 1:
-        cache.drop(i);
-        break;
-      default:
-        RC_ASSERT(equal(*cache.take(i, tracing(frames[i])), frames[i]));
-        RC_ASSERT(equal(*cache.take(i, never), frames[i]));
+    if (random() % 4 == 0) {
+      cache.put(i, copy_of(frames[i]));
+    } else {
+      RC_ASSERT(equal(*cache.take(i, tracing(frames[i])), frames[i]));
+      RC_ASSERT(equal(*cache.take(i, never), frames[i]));
     }
     RC_ASSERT(cache.in_memory() <= most);
   }
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    cache.drop(i);
-  }
-  RC_ASSERT(cache.in_memory() == 0U);
 }
 
 TEST(LogCache, ManyThreadsShareALittleMemory) {
@@ -119,10 +110,7 @@ TEST(LogCache, ManyThreadsShareALittleMemory) {
     });
     EXPECT_EQ(wrong, 0U);
     EXPECT_EQ(traced > frames.size(), all > limit) << "some had to go";
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      cache.drop(i);
-    }
-    EXPECT_EQ(cache.in_memory(), 0U);
+    EXPECT_LE(cache.in_memory(), std::max(limit, largest(frames)));
   }
 }
 
@@ -182,8 +170,6 @@ TEST(LogCache, ALogOutlivesItsCache) {
     LogCache cache(0);
     cache.put(0, copy_of(frames[0]));
     log = cache.take(0, never);
-    cache.drop(0);
-    EXPECT_GT(cache.in_memory(), 0U);
   }
   EXPECT_TRUE(equal(*log, frames[0]));
 }

@@ -50,8 +50,8 @@ std::string all_of(const ReportPoints& sweep) {
 TEST(AnswerOfSweep, SaysWhatWouldHelpWhereThatIsKnown) {
   ReportPoints sweep = line_of({{1, 100}, {2, 50}});
   EXPECT_EQ(all_of(sweep).find("What would help"), std::string::npos);
-  sweep.points[1].limit = "node.clock: some";
-  EXPECT_NE(all_of(sweep).find("What would help it, predicted: node.clock: some."), std::string::npos);
+  sweep.points[1].advice = "node.clock: some";
+  EXPECT_NE(all_of(sweep).find("What would help it, measured: node.clock: some."), std::string::npos);
 }
 
 TEST(Choose, TakesTheFrontOfOneFrameOnly) {

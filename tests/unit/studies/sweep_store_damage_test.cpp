@@ -192,27 +192,6 @@ TEST_F(DamagedStore, WhatAUserAddsIsNone) {
   EXPECT_NO_THROW(SweepStore(file_, made_plan(machines)));
 }
 
-// Format 1 had no checksums. It can be read, but no sweep goes on with it.
-TEST_F(DamagedStore, AnOlderFormatIsReadAsItIs) {
-  const std::string expected = figures_of(file_);
-  {
-    SqliteConnection connection(file_, SqliteConnection::Access::write);
-    connection.execute(
-        "ALTER TABLE results DROP COLUMN checksum; ALTER TABLE frame_results DROP COLUMN checksum; "
-        "DELETE FROM store WHERE what = 'checksum'; UPDATE store SET value = '1' WHERE what = 'format'; "
-        "PRAGMA user_version = 1");
-  }
-  EXPECT_EQ(figures_of(file_), expected);
-  EXPECT_NE(user_error_of([&] { SweepStore(file_, made_plan(machines)); }).find("another build"),
-            std::string::npos);
-  {
-    SqliteConnection connection(file_, SqliteConnection::Access::write);
-    connection.execute("UPDATE results SET hits = 'many' WHERE machine = 1");
-  }
-  const std::string message = user_error_of([&] { (void)figures_of(file_); });
-  EXPECT_NE(message.find("its column hits holds a value that is no INTEGER"), std::string::npos) << message;
-}
-
 // The lock is written and removed; a file that may not be a lock is left alone.
 TEST_F(DamagedStore, ALockIsNoLinkAndNothingElse) {
   const fs::path lock = file_.string() + ".lock";

@@ -1,0 +1,132 @@
+#include "studies/sweep/advise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "processors/replay/replay.h"
+#include "processors/walk/stripped_log.h"
+#include "sim/joined.h"
+#include "sim/mapped.h"
+#include "studies/figures/best_offer.h"
+#include "studies/helps/what_helps.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/sweep/plan/sweep_keys.h"
+
+namespace marti::studies::sweep {
+
+namespace {
+
+constexpr std::size_t most_advised = 12;
+constexpr std::size_t least_advised = 2;
+constexpr helps::Work least_work = 100'000'000;  // for one machine; enough for a small frame
+constexpr helps::Work part_of_sweep = 10;
+
+// Whether two frames were rendered alike: trees that were built otherwise give the same rays and pixels.
+bool is_same_work(const FrameRow& a, const FrameRow& b) {
+  return a.scene_hash == b.scene_hash && a.image_hash == b.image_hash && a.hit_hash == b.hit_hash;
+}
+
+// Machines of the fastest point's frame that no other beats in price and time, the fastest first, then the
+// knee. The price is the number of nodes where all points cost the same, as on the sweep's page.
+std::vector<std::size_t> machines_that_matter(const SweepPlan& plan, SweepStore& store) {
+  const std::vector<std::int64_t> ends = store.sums("\"end\"");
+  const std::vector<std::int64_t> nodes = store.sums("nodes");
+  const auto end_of = [&](const SweepPoint& point) { return ends[point.machine]; };
+  const bool priced = std::ranges::any_of(
+      plan.points, [&](const SweepPoint& point) { return point.cost != plan.points.front().cost; });
+  const std::size_t frame = plan.machines[std::ranges::min_element(plan.points, {}, end_of)->machine].frame;
+  std::vector<bool> compared;
+  for (std::size_t other = 0; other < plan.frames.size(); ++other) {
+    compared.push_back(is_same_work(*store.find_frame(frame), *store.find_frame(other)));
+  }
+  std::vector<figures::Offer> offers;
+  std::vector<std::size_t> machines;
+  for (const SweepPoint& point : plan.points) {
+    if (compared[plan.machines[point.machine].frame]) {
+      offers.push_back({priced ? point.cost : static_cast<double>(nodes[point.machine]),
+                        static_cast<double>(end_of(point))});
+      machines.push_back(point.machine);
+    }
+  }
+  std::vector<std::size_t> front = figures::pareto_front(offers, figures::Better::lower);
+  const std::vector<figures::Offer> on_front = sim::mapped(front, [&](std::size_t i) { return offers[i]; });
+  const std::size_t knee = front[figures::knee_of(on_front)];
+  std::ranges::reverse(front);
+  if (const auto at = std::ranges::find(front, knee); at != front.begin()) {
+    std::rotate(front.begin() + 1, at, at + 1);
+  }
+  return sim::mapped(front, [&](std::size_t i) { return machines[i]; });
+}
+
+sim::Config config_of(const SweepPlan& plan, const SweepMachine& machine, const sim::Schema& schema) {
+  std::vector<std::string> given;
+  const auto add = [&](const std::vector<sim::EffectiveValue>& settings) {
+    for (const sim::EffectiveValue& setting : settings) {
+      if (setting.given) {
+        given.push_back(setting.key + "=" + setting.value);
+      }
+    }
+  };
+  add(plan.frames[machine.frame].settings);
+  add(all_of(machine.settings));
+  return sim::Config::from_text(schema, "", plan.file, given);
+}
+
+Advice measure(const SweepPlan& plan, const SweepMachine& machine, const processors::program::WorkLog& log,
+               const sim::MemoryBudget& memory, helps::Work budget) {
+  const sim::Schema schema = sweep_schema();
+  sim::Config config = config_of(plan, machine, schema);
+  const processors::machine::MachineConfig described = keys::read_machine(config);
+  helps::SharedLog shared{log, nullptr, {}, memory};
+  if (processors::walk::StrippedLog::ways_of(described) != 0) {
+    shared.stripped = processors::walk::StrippedLog::make(log, described, memory.left() / 4);
+  }
+  processors::replay::ReplayOptions options;
+  options.stripped = shared.stripped.get();
+  const processors::replay::MachineResult timed = processors::replay::replay(log, described, options);
+  const helps::WhatHelps what = helps::what_helps(config, plan.prices, described, timed, shared, budget);
+  const std::vector<const helps::Help*> best = helps::best_helps(what);
+  const helps::MeasuredChange* const step = !best.empty() ? &*best.front()->step
+                                            : what.pair   ? &what.pair->step
+                                                          : nullptr;
+  if (step == nullptr) {
+    return {what.sentence, {}, {}};
+  }
+  const std::vector<std::string> settings =
+      sim::mapped(step->keys, [](const helps::KeyChange& key) { return key.key + "=" + key.to; });
+  return {what.sentence, sim::joined(settings, "; "), step->saved};
+}
+
+}  // namespace
+
+void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& memory,
+            const std::function<std::shared_ptr<const FrameLog>(std::size_t)>& trace,
+            const std::function<void(std::size_t, const Advice&)>& save) {
+  if (plan.points.empty()) {
+    return;
+  }
+  std::vector<std::size_t> machines = machines_that_matter(plan, store);
+  const std::vector<std::int64_t> work =
+      store.sums("4 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 80 * events");
+  const helps::Work budget = std::reduce(work.begin(), work.end(), helps::Work{0}) / part_of_sweep;
+  machines.resize(
+      std::min(machines.size(), std::clamp<std::size_t>(budget / least_work, least_advised, most_advised)));
+  const std::vector<bool> advised = store.advised();
+  for (const std::size_t index : machines) {
+    if (advised[index]) {
+      continue;
+    }
+    const SweepMachine& machine = plan.machines[index];
+    const std::shared_ptr<const FrameLog> log = trace(machine.frame);
+    const std::uint64_t taken = std::min(memory.left(), memory_of(*log->log));
+    save(index, measure(plan, machine, *log->log, sim::MemoryBudget(memory.left() - taken),
+                        std::max(least_work, budget / machines.size())));
+  }
+}
+
+}  // namespace marti::studies::sweep
