@@ -219,23 +219,10 @@ describe("the explorer", () => {
       for (const keys of [["Home"], ["ArrowRight"], ["ArrowRight", "ArrowRight"], ["ArrowLeft"]]) {
         await press(page, "cache.size", keys);
         assertLine(await rowsOf(page, "speed_up"), await machineOf(page));
-        const [, ordinal, ms] = (await reading(page)).match(/exact, point (\d+): ([\d.e+]+) ms a frame/);
+        const [, ordinal, ms] = (await reading(page)).match(/point (\d+): ([\d.e+]+) ms a frame/);
         assertClose(Number(ms), points.find((row) => row.ordinal === Number(ordinal)).end * 1e-9, "the reading", 1e-3);
       }
       assert.notDeepEqual(before, await machineOf(page));
-    }));
-
-  it("reads the curve where its slider stands, and says where it extrapolates", () =>
-    withPage("sweep", async (page) => {
-      await press(page, "machine.nodes", ["Home"]);
-      assert.match(await reading(page), /^machine.nodes = 1: exact, point \d+: /);
-      await press(page, "machine.nodes", ["ArrowRight", "ArrowRight"]);
-      assert.match(await reading(page), /modelled, .* band /);
-      assert.doesNotMatch(await reading(page), /[Ee]xtrapolated/);
-      await press(page, "machine.nodes", ["End"]);
-      assert.match(await reading(page), /Extrapolated/);
-      const zones = (await rowsOf(page, "frame_time")).filter(({ kind }) => kind === "zone");
-      assert.ok(zones.length > 0, "the part beyond the points is marked");
     }));
 
   it("goes along another axis", () =>

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "memory/record_kind.h"
 #include "sim/mapped.h"
@@ -20,53 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double ms_a_ps = 1e-9;
 constexpr double ps_a_ms = 1e9;
 constexpr double ps_a_us = 1e6;
-
-Json error_json(const ModelError* errors) {
-  Json json = Json::object();
-  for (const Zone zone : {Zone::between, Zone::beyond}) {
-    const ModelError& error = errors[static_cast<std::size_t>(zone)];
-    json[zone == Zone::between ? "between" : "beyond"] = {
-        {"points", error.points}, {"mean", error.mean}, {"p95", error.p95}, {"known", error.is_known()}};
-  }
-  return json;
-}
-
-Json model_json(const AxisModel& model) {
-  Json json = {{"note", error_note(&model)},
-               {"x", Json::array()},
-               {"error", error_json(model.end)},
-               {"speed_up_error", error_json(model.speed_up)},
-               {"curves", Json::object()}};
-  for (const double x : model.x) {
-    json["x"].push_back(x);
-  }
-  for (const auto& [key, curve] : model.curves) {
-    Json ms = Json::array();
-    Json base = Json::array();
-    Json bound = Json::array();
-    bool one_base = true;
-    double first_base = -1.0;
-    for (const std::optional<Modelled>& sample : curve.samples) {
-      ms.push_back(sample ? Json(sim::rounded(sample->end * ms_a_ps, curve_digits)) : Json());
-      base.push_back(sample ? Json(sim::rounded(sample->base_end * ms_a_ps, place_digits)) : Json());
-      bound.push_back(sample ? Json(sim::rounded(sample->asymptote * ms_a_ps, curve_digits)) : Json());
-      if (sample) {
-        first_base = first_base < 0.0 ? sample->base_end : first_base;
-        one_base = one_base && std::abs(sample->base_end - first_base) <= 1e-9 * first_base;
-      }
-    }
-    Json each = {{"ms", ms}, {"bound", bound}};
-    each["base"] = one_base ? Json(sim::rounded(std::max(first_base, 0.0) * ms_a_ps, place_digits)) : base;
-    if (curve.saturation) {
-      each["saturation"] = *curve.saturation;
-    }
-    json["curves"][key] = each;
-  }
-  return json;
-}
 
 /// A figure of every point that the page has.
 struct ExplorerField {
@@ -103,6 +59,8 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   for (const std::string_view group : cycle_group_names) {
     fields.push_back({"part_" + std::string(group)});
   }
+  fields.push_back({"bound", "ms", ps_a_ms, false, false, "asymptotic bound"});
+  fields.push_back({"saturation", "1", 1.0, false, false, "saturation"});
   std::erase_if(fields, [&](const ExplorerField& field) {
     return std::ranges::none_of(sweep.points,
                                 [&](const ReportPoint& point) { return point.has(field.name); });
@@ -110,14 +68,26 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   return fields;
 }
 
-// Prices, groups of activities and percentiles are not in the catalogue of figures; the report itself works
-// them out.
+// Prices, bounds, groups of activities and percentiles are not in the catalogue of figures; the report itself
+// works them out.
+constexpr std::pair<std::string_view, std::string_view> own_meanings[] = {
+    {"bound", "no frame with these counters is shorter"},
+    {"saturation", "nodes of a cluster from which on its busiest queue is full"}};
 constexpr std::string_view group_prefix = "part_";
 constexpr std::string_view percentile_part = "_wait_p";
 
+std::string_view own_meaning_of(std::string_view name) {
+  for (const auto& [own, meaning] : own_meanings) {
+    if (own == name) {
+      return meaning;
+    }
+  }
+  return {};
+}
+
 bool is_catalogued(const ExplorerField& field) {
-  return field.name != "price" && !field.name.starts_with(group_prefix) &&
-         field.name.find(percentile_part) == std::string::npos;
+  return field.name != "price" && own_meaning_of(field.name).empty() &&
+         !field.name.starts_with(group_prefix) && field.name.find(percentile_part) == std::string::npos;
 }
 
 // Parts of a whole, which people read in percent.
@@ -129,6 +99,9 @@ bool is_share(const ExplorerField& field) {
 std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
   if (is_catalogued(field)) {
     return figures::figure_named(field.name).description;
+  }
+  if (const std::string_view own = own_meaning_of(field.name); !own.empty()) {
+    return std::string(own);
   }
   if (field.name == "price") {
     return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
@@ -206,13 +179,10 @@ Json channel_of(const ReportAxis& axis) {
 
 }  // namespace
 
-Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models, const Chosen& chosen,
-                   std::optional<std::size_t> axis) {
+Json explorer_json(const ReportPoints& sweep, const Chosen& chosen, std::optional<std::size_t> axis) {
   Json json = {{"axis", axis ? Json(*axis) : Json()},
                {"start", chosen.knee},
                {"fastest", chosen.fastest},
-               {"no_model", error_note(nullptr)},
-               {"no_curve", no_curve},
                {"price", sweep.priced ? "price" : "nodes"},
                {"budget", chosen.budget ? Json(*chosen.budget) : Json()}};
   const std::optional<std::size_t> colour = colour_axis(sweep, axis);
@@ -241,10 +211,6 @@ Json explorer_json(const ReportPoints& sweep, std::span<const AxisModel> models,
   for (const ExplorerField& field : explorer_fields(sweep)) {
     json["fields"].push_back(field_json(field, sweep));
     json["columns"][field.name] = column_of(field, sweep);
-  }
-  json["models"] = Json::object();
-  for (const AxisModel& model : models) {
-    json["models"][std::to_string(model.axis)] = model_json(model);
   }
   return json;
 }

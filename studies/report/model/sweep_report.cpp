@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
@@ -14,7 +13,6 @@
 #include "studies/report/model/explorer.h"
 #include "studies/report/model/report_points.h"
 #include "studies/report/model/sweep_answer.h"
-#include "studies/report/model/sweep_model.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
@@ -23,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A chart of exact points only: figures over an axis.
+// Figures over an axis.
 struct SliceChart {
   std::string_view name;  // of chart and specification
   std::string_view title;
@@ -98,19 +96,21 @@ void drop_ideal(Json& spec) {
     Json& encoding = spec["layer"][i]["encoding"];
     if (encoding.contains("color")) {
       ideal = encoding["color"]["datum"] == "ideal" ? i : ideal;
-      encoding["color"]["scale"]["domain"].erase(3);
-      encoding["color"]["scale"]["range"].erase(3);
+      encoding["color"]["scale"]["domain"].erase(2);
+      encoding["color"]["scale"]["range"].erase(2);
     }
   }
   spec["layer"].erase(ideal);
 }
 
-// Exact points over an axis, with the model's curve if it is one of numbers. `model` may be null.
-void add_explored(const std::string& name, const std::string& title, const ReportAxis& axis,
-                  const AxisModel* model, ChartWords words, ReportData& report) {
+// Exact points over an axis, joined by lines if it is one of numbers.
+void add_explored(const std::string& name, const std::string& title, const ReportAxis& axis, ChartWords words,
+                  ReportData& report) {
   ReportChart chart = live_chart("over_axis", name, fmt::format("{} over {}", title, axis.name),
                                  {{"rows", "explorer"}, {"title", title}}, words);
-  chart.note = axis.numeric ? error_note(model) : std::string(no_curve);
+  chart.note =
+      "Points and bars are machines of the sweep, simulated exactly; lines only join them. The bound follows "
+      "from each point's own counters.";
   report.charts.push_back(std::move(chart));
 }
 
@@ -179,28 +179,6 @@ tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
   return table;
 }
 
-tables::Table error_table(const ReportPoints& sweep, std::span<const AxisModel> models) {
-  tables::Table table("model_error", "Error of the analytic model, measured by leaving exact points out",
-                      {tables::text_column("axis", "key that the curve runs along"),
-                       tables::text_column("figure", "what is modelled"),
-                       tables::text_column("zone", "between exact points, or one step beyond them"),
-                       tables::count_column("points", "points that were left out once"),
-                       tables::real_column("mean", "fraction", "mean error"),
-                       tables::real_column("p95", "fraction", "95th percentile, the band that is shown")});
-  for (const AxisModel& model : models) {
-    for (const Zone zone : {Zone::between, Zone::beyond}) {
-      for (const auto& [figure, errors] :
-           {std::pair("frame time", model.end), std::pair("speed-up", model.speed_up)}) {
-        const ModelError& error = errors[static_cast<std::size_t>(zone)];
-        table.add_row({sweep.axes[model.axis].name, figure, zone == Zone::between ? "between" : "beyond",
-                       error.points, error.points > 0 ? tables::Cell(error.mean) : tables::Cell(),
-                       error.points > 0 ? tables::Cell(error.p95) : tables::Cell()});
-      }
-    }
-  }
-  return table;
-}
-
 // "teapot:12, 512 x 512 pixels; machine.nodes 1 to 256, cache.size 4 KiB to 64 KiB": the frame, and what is
 // varied.
 std::string about_sweep(const ReportPoints& sweep) {
@@ -240,22 +218,19 @@ std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
 
 ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget) {
   const Chosen chosen = choose(sweep, budget);
-  const std::vector<AxisModel> models = model_sweep(sweep);
   const std::optional<std::size_t> axis = first_axis(sweep);
   ReportData report;
   report.kind = "sweep";
   report.title = "Sweep of " + tables::counted(sweep.points.size(), "machine");
   report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
-  report.explorer = explorer_json(sweep, models, chosen, axis);
+  report.explorer = explorer_json(sweep, chosen, axis);
   if (axis) {
-    const auto model = std::ranges::find(models, *axis, &AxisModel::axis);
-    const AxisModel* const curve = model == models.end() ? nullptr : &*model;
-    add_explored("frame_time", "Frame time", sweep.axes[*axis], curve,
+    add_explored("frame_time", "Frame time", sweep.axes[*axis],
                  {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}}, report);
     drop_ideal(report.charts.back().spec);
-    add_explored("speed_up", "Speed-up", sweep.axes[*axis], curve,
-                 {{"FIGURE", "speed_up"}, {"TITLE", "speed-up"}}, report);
+    add_explored("speed_up", "Speed-up", sweep.axes[*axis], {{"FIGURE", "speed_up"}, {"TITLE", "speed-up"}},
+                 report);
   }
   if (sweep.points.size() > 1) {
     add_front(sweep, "price", sweep.priced ? "price" : "number of nodes", sweep.priced ? "price" : "nodes",
@@ -284,9 +259,6 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   }
   constexpr std::size_t few = 12;
   report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});
-  if (!models.empty()) {
-    report.tables.push_back({error_table(sweep, models), true});
-  }
   for (const auto& [key, value] : sweep.settings) {
     report.configuration += key + " = " + value + "\n";
   }

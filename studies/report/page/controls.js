@@ -1,4 +1,4 @@
-// The explorer's controls: a slider or a list for each axis, the axis of the curve, what colours show, and the budget.
+// The explorer's controls: a slider or a list for each axis, the axis that charts run along, what colours show, and the budget.
 "use strict";
 
 /** A price that a machine may have; null for a text that is none. */
@@ -22,14 +22,14 @@ marti.controls = (explorer, { moved, turned, coloured, budgeted }) => {
     const output = document.createElement("output");
     input.dataset.axis = axis.name;
     labelled(input, `axis-${a}`, `${[axis.name, ...axis.followers].join(", ")} `, output);
-    if (axis.numeric) Object.assign(input, { type: "range", min: 0, step: 1 });
+    if (axis.numeric) Object.assign(input, { type: "range", min: 0, max: axis.values.length - 1, step: 1 });
     else input.append(...axis.texts.map((text, i) => new Option(text, i)));
     input.addEventListener("input", () => moved(a, Number(input.value)));
     return { input, output };
   });
 
   const names = () => axes.map((axis, a) => new Option(axis.name, a));
-  const along = labelled(document.createElement("select"), "along", "Curve along ");
+  const along = labelled(document.createElement("select"), "along", "Charts along ");
   along.append(...names());
   along.addEventListener("change", () => turned(Number(along.value)));
   const colour = labelled(document.createElement("select"), "colour", "Colours show ");
@@ -39,19 +39,16 @@ marti.controls = (explorer, { moved, turned, coloured, budgeted }) => {
   Object.assign(budget, { type: "number", min: 0, step: "any" });
   budget.addEventListener("input", () => budgeted(marti.budgetOf(budget.value)));
 
-  function showAxis({ input, output }, axis, at, own) {
-    if (axis.numeric) {
-      const text = own ? own.text : axis.texts[at];
-      input.max = own ? own.last : axis.values.length - 1;
-      output.textContent = text + (own ? " (along the curve)" : "");
-      input.setAttribute("aria-valuetext", text);
-    }
-    input.value = own ? own.at : at;
-  }
-
-  /** Shows the choices; `own` is where the curve is read: {at, last, text} of its samples. */
-  function show(state, own) {
-    controls.forEach((control, a) => showAxis(control, axes[a], state.place[a], a === state.axis ? own : null));
+  /** Shows the choices. */
+  function show(state) {
+    controls.forEach(({ input, output }, a) => {
+      const text = axes[a].texts[state.place[a]];
+      if (axes[a].numeric) {
+        output.textContent = text + (a === state.axis ? " (along the charts)" : "");
+        input.setAttribute("aria-valuetext", text);
+      }
+      input.value = state.place[a];
+    });
     along.value = state.axis;
     colour.value = state.colour ?? "";
     if (Number(budget.value) !== state.budget) budget.value = state.budget ?? "";

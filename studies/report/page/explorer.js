@@ -8,65 +8,30 @@ marti.explorer = (() => {
   if (!explorer) return null;
   const { axes } = explorer;
   const first = marti.rows.firstView(explorer);
-  const state = { ...first, place: [...first.place], x: null }; // x: index of the sample that the curve is read at
+  const state = { ...first, place: [...first.place] };
   const live = [...charts.values()].filter((chart) => chart.live);
   const declared = new Map(live.map((chart) => [chart.name, chart.spec]));
   const reading = document.getElementById("reading");
   const points = new Map(explorer.ordinal.map((_, p) => [axes.map((_, a) => explorer.place[a][p]).join(), p]));
   const digits = (value) => marti.number(value);
 
-  /** Places along an axis at which the curve can be read; a name is only itself. */
-  const samples = (a = state.axis) => (axes[a].numeric ? explorer.models[a]?.x ?? axes[a].values : axes[a].texts.map((_, i) => i));
-  const placeOf = (axis, x) => (axis.numeric ? axis.values.indexOf(x) : x);
-  const withUnit = (axis, x) => {
-    const at = placeOf(axis, x);
-    return at >= 0 ? axis.texts[at] : marti.number(x, axis);
-  };
-
-  /** The point where the controls stand; undefined between points, and where none was timed. */
-  function chosen() {
-    const between = state.axis !== null && placeOf(axes[state.axis], samples()[state.x]) < 0;
-    return between ? undefined : points.get(state.place.join());
-  }
+  /** The point where the controls stand; undefined where none was timed. */
+  const chosen = () => points.get(state.place.join());
 
   const view = () => ({ ...state, chosen: chosen(), lets: table.lets });
 
-  /** The exact value nearest to a sample: what the other charts show. */
-  function nearest(axis, x) {
-    if (!axis.numeric) return x;
-    const distance = (value) => Math.abs(axis.logarithmic ? Math.log(value / x) : value - x);
-    let best = 0;
-    axis.values.forEach((value, i) => {
-      if (distance(value) < distance(axis.values[best])) best = i;
-    });
-    return best;
-  }
-
   function read() {
-    const axis = axes[state.axis];
-    const x = samples()[state.x];
     const point = chosen();
-    let text = `${axis.name} = ${withUnit(axis, x)}: `;
-    let beyond = false;
-    if (point !== undefined) {
-      text += `exact, point ${explorer.ordinal[point]}: ${digits(explorer.columns.end[point])} ms a frame`;
+    const axis = axes[state.axis];
+    let text = `${axis.name} = ${axis.texts[state.place[state.axis]]}: `;
+    if (point === undefined) {
+      text += "this machine was not timed.";
+    } else {
+      text += `point ${explorer.ordinal[point]}: ${digits(explorer.columns.end[point])} ms a frame`;
       const speedUp = explorer.columns.speed_up && explorer.columns.speed_up[point];
       text += speedUp ? `, speed-up ${digits(speedUp)}.` : ".";
-    } else {
-      const row = axis.numeric && marti.rows.samples(explorer, state.axis, state.place, state.x)[0];
-      if (!row) {
-        text += "this machine was not timed, and the model has no measured error here.";
-      } else {
-        beyond = row.zone !== "between";
-        text += `modelled, ${digits(row.ms)} ms a frame (95 % band ${digits(row.ms_low)} to ${digits(row.ms_high)} ms)`;
-        if (row.speed_up) {
-          text += `, speed-up ${digits(row.speed_up)} (${digits(row.speed_up_low)} to ${digits(row.speed_up_high)})`;
-        }
-        text += beyond ? ". Extrapolated: beyond all exact points." : ".";
-      }
     }
     reading.textContent = text;
-    reading.classList.toggle("extrapolated", beyond);
   }
 
   /** What of the choices shapes a chart: where it differs, the chart is drawn anew. */
@@ -93,7 +58,7 @@ marti.explorer = (() => {
       }
       const spec = marti.specs.filled(explorer, declared.get(chart.name), chart.live, now, data.about);
       if (chart.live.rows === "explorer" && axes[state.axis].numeric) {
-        spec.data.values.push({ kind: "cursor", x: samples()[state.x] });
+        spec.data.values.push({ kind: "cursor", x: axes[state.axis].values[state.place[state.axis]] });
       }
       Object.assign(chart, { spec, form, filter, title: spec.title.text ?? spec.title, changed: all ? ["rows", "marks"] : ["rows"] });
       return another;
@@ -101,12 +66,7 @@ marti.explorer = (() => {
   }
 
   function showTitles() {
-    for (const chart of live) {
-      document.getElementById(`title-${chart.name}`).textContent = chart.title;
-      if (chart.live.rows !== "explorer") continue;
-      const note = axes[state.axis].numeric ? explorer.models[state.axis]?.note ?? explorer.no_model : explorer.no_curve;
-      document.getElementById(`note-${chart.name}`).textContent = note;
-    }
+    for (const chart of live) document.getElementById(`title-${chart.name}`).textContent = chart.title;
   }
 
   async function update() {
@@ -144,39 +104,22 @@ marti.explorer = (() => {
   // Whether the charts may not show yet what the controls say.
   const busy = () => pending || running > 0;
 
-  function showControls() {
-    controls.show(state, { at: state.x, last: samples().length - 1, text: withUnit(axes[state.axis], samples()[state.x]) });
-  }
-
-  /** The curve is read where the machine stands. */
-  function toSample() {
-    const axis = axes[state.axis];
-    const at = state.place[state.axis];
-    state.x = Math.max(0, samples().indexOf(axis.numeric ? axis.values[at] : at));
-  }
-
   function choose(p) {
     state.place = axes.map((_, a) => explorer.place[a][p]);
-    if (state.axis !== null) {
-      toSample();
-      showControls();
-    }
+    if (state.axis !== null) controls.show(state);
     request();
   }
 
   // What the controls say.
   function moved(a, value) {
-    const own = a === state.axis;
-    if (own) state.x = value;
-    state.place[a] = own ? nearest(axes[a], samples()[value]) : value;
-    showControls();
+    state.place[a] = value;
+    controls.show(state);
     request();
   }
 
   function turned(a) {
     state.axis = a;
-    toSample();
-    showControls();
+    controls.show(state);
     request();
   }
 
@@ -203,7 +146,6 @@ marti.explorer = (() => {
       return named;
     }
     axes.forEach((axis, a) => (named[`axis.${axis.name}`] = axis.texts[state.place[a]]));
-    if (axes[state.axis].numeric) named.at = samples()[state.x];
     return named;
   }
 
@@ -220,13 +162,7 @@ marti.explorer = (() => {
       const at = axis.texts.indexOf(named[`axis.${axis.name}`]);
       return at >= 0 ? at : explorer.place[a][point >= 0 ? point : explorer.start];
     });
-    toSample();
-    const sample = samples().indexOf(Number(named.at || NaN));
-    if (sample >= 0 && axes[state.axis].numeric) {
-      state.x = sample;
-      state.place[state.axis] = nearest(axes[state.axis], samples()[sample]);
-    }
-    showControls();
+    controls.show(state);
   }
 
   const table = marti.table(explorer, { choose, changed: request });

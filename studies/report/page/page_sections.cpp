@@ -91,11 +91,9 @@ std::string charts_html(const ReportData& report, bool explored) {
 }
 
 std::string explorer_html(const std::string& charts) {
-  return "<p>Points are machines of the sweep, simulated exactly. The curve is the analytic model: it "
-         "reaches one step "
-         "of the axis beyond the points, where it is dashed and marked as extrapolated. All charts of the "
-         "sweep follow "
-         "the controls; a click on a point, here or in the table, chooses its machine.</p>\n"
+  return "<p>Points are machines of the sweep, simulated exactly. All charts of the sweep follow the "
+         "controls; a "
+         "click on a point, here or in the table, chooses its machine.</p>\n"
          "<div id=\"controls\" role=\"group\" aria-label=\"The machine that is shown\"></div>\n"
          "<p id=\"reading\" role=\"status\" aria-live=\"polite\"></p>\n" +
          charts;

@@ -1,12 +1,10 @@
-// Rows of the charts that follow the explorer, from the columns and curves of a sweep (docs/report.md). A page has
+// Rows of the charts that follow the explorer, from the columns of a sweep (docs/report.md). A page has
 // them for the machine that its reader has chosen, a plot for the one that the page begins with. A view says what is
 // chosen: {axis, place, colour, chosen, lets, budget}, of which a plot has the first three. No element of the page is touched
 // here.
 "use strict";
 
 marti.rows = (() => {
-  const key = (place, axis) => place.map((value, i) => (i === axis ? "*" : value)).join(",");
-
   /** Numbers of the points that differ from `place` along `axis` only, in the axis' order. */
   function line(explorer, axis, place) {
     const found = [];
@@ -14,41 +12,6 @@ marti.rows = (() => {
       if (explorer.axes.every((_, a) => a === axis || explorer.place[a][i] === place[a])) found.push(i);
     }
     return found.sort((a, b) => explorer.place[axis][a] - explorer.place[axis][b]);
-  }
-
-  /** What the model says at sample `i` of a curve, with the band of a zone: "below", "between" or "above". At an exact
-   *  point the model is exact, and the band has no width. */
-  function banded(model, curve, i, zone, exact) {
-    const which = zone === "between" ? "between" : "beyond";
-    const factor = exact ? 1 : 1 + model.error[which].p95;
-    const base = Array.isArray(curve.base) ? curve.base[i] : curve.base;
-    const ms = curve.ms[i];
-    const row = { kind: "model", zone, x: model.x[i], ms, ms_low: ms / factor, ms_high: ms * factor };
-    row.ms_bound = curve.bound[i];
-    if (base > 0 && model.speed_up_error[which].known) {
-      const speedFactor = exact ? 1 : 1 + model.speed_up_error[which].p95;
-      row.speed_up = base / ms;
-      row.speed_up_low = row.speed_up / speedFactor;
-      row.speed_up_high = row.speed_up * speedFactor;
-      row.speed_up_bound = curve.bound[i] > 0 ? base / curve.bound[i] : null;
-    }
-    return row;
-  }
-
-  /** Rows of sample `i`: none where there is no curve or no measured error, two at the outer points. */
-  function samples(explorer, axis, place, i) {
-    const model = explorer.models[axis];
-    const curve = model && model.curves[key(place, axis)];
-    if (!curve || curve.ms[i] === null || curve.ms[i] === undefined) return [];
-    const xs = line(explorer, axis, place).map((p) => explorer.axes[axis].values[explorer.place[axis][p]]);
-    const first = xs[0];
-    const last = xs[xs.length - 1];
-    const x = model.x[i];
-    const zones = [];
-    if (x <= first && model.error.beyond.known) zones.push("below");
-    if (x >= first && x <= last && model.error.between.known) zones.push("between");
-    if (x >= last && model.error.beyond.known) zones.push("above");
-    return zones.map((zone) => banded(model, curve, i, zone, xs.includes(x)));
   }
 
   /** Speed-up that is the number of nodes, for a unit of the axis; 0 when it is no axis of nodes. */
@@ -85,9 +48,11 @@ marti.rows = (() => {
   function exact(explorer, { axis, chosen }, p, colour, kind) {
     const { numeric, values, texts } = explorer.axes[axis];
     const at = explorer.place[axis][p];
-    const row = { kind, zone: "between", ...named(explorer, p, colour), value: texts[at], ms: explorer.columns.end[p] };
+    const { end, bound, speed_up: speedUp } = explorer.columns;
+    const row = { kind, ...named(explorer, p, colour), value: texts[at], ms: end[p], ms_bound: bound[p] };
     if (numeric) row.x = values[at];
-    if (explorer.columns.speed_up) row.speed_up = explorer.columns.speed_up[p];
+    if (speedUp) row.speed_up = speedUp[p];
+    if (speedUp?.[p] && bound[p] > 0) row.speed_up_bound = (speedUp[p] * end[p]) / bound[p];
     if (p === chosen) row.chosen = 1;
     return row;
   }
@@ -96,24 +61,13 @@ marti.rows = (() => {
     const { axis, place } = view;
     const shown = view.colour === axis ? null : view.colour;
     const points = line(explorer, axis, place);
-    const xs = points.map((p) => explorer.axes[axis].values[explorer.place[axis][p]]);
-    const model = explorer.models[axis];
-    const curve = model && model.curves[key(place, axis)];
     const unit = ideal(explorer, axis, points);
-    const rows = [];
-    if (curve) {
-      const modelled = model.x.flatMap((_, i) => samples(explorer, axis, place, i));
-      const low = Math.min(xs[0], ...modelled.map((row) => row.x));
-      const high = Math.max(xs[xs.length - 1], ...modelled.map((row) => row.x));
-      if (low < xs[0]) rows.push({ kind: "zone", zone: "below", x: low, x2: xs[0] });
-      if (high > xs[xs.length - 1]) rows.push({ kind: "zone", zone: "above", x: xs[xs.length - 1], x2: high });
-      if (curve.saturation >= low && curve.saturation <= high) rows.push({ kind: "saturation", x: curve.saturation });
-      for (const row of modelled) rows.push(unit > 0 ? { ...row, ideal: unit * row.x } : row);
-    }
-    points.forEach((p, i) => {
+    const rows = points.map((p) => {
       const row = exact(explorer, view, p, shown, "exact");
-      rows.push(unit > 0 ? { ...row, ideal: unit * xs[i] } : row);
+      return unit > 0 ? { ...row, ideal: unit * row.x } : row;
     });
+    const full = explorer.axes[axis].name === "machine.nodes" && explorer.columns.saturation?.[points.at(-1)];
+    if (full >= rows[0]?.x && full <= rows.at(-1).x) rows.push({ kind: "saturation", x: full });
     for (const value of shown === null ? [] : around(explorer, shown, place)) {
       if (value === place[shown]) continue;
       const other = place.map((at, a) => (a === shown ? value : at));
@@ -188,5 +142,5 @@ marti.rows = (() => {
     return live.rows === "slice" ? slice(explorer, live, view) : all(explorer, live, view);
   }
 
-  return { line, samples, around, machine, roles, marks, firstView, of };
+  return { line, around, machine, roles, marks, firstView, of };
 })();

@@ -46,22 +46,19 @@ marti.specs = (() => {
     return { ...rest, layer: [...views, { transform: [{ filter: "datum.chosen" }], mark: rule, encoding: { x } }] };
   }
 
-  const neutral = (view) => {
-    const { color, ...encoding } = view.encoding;
-    return color ? { ...view, mark: { ...view.mark, color: "#777777" }, encoding } : view;
-  };
-
-  /** The curve along an axis of numbers; if colours show another axis, exact lines of it, and the model in grey. */
+  /** Lines along an axis of numbers; if colours show another axis, one of each colour, without the bound. */
   function curved(spec, axis, colour) {
     const x = { field: "x", type: "quantitative", ...axis.x };
     const whole = { ...spec, encoding: { ...spec.encoding, x } };
     if (!colour) return whole;
     const exact = spec.layer.find(({ name }) => name === "exact");
     const others = spec.layer.filter(({ name }) => name !== "exact" && name !== "bound");
-    const mark = { type: "line", strokeWidth: 1.5, point: { size: 60, filled: true, opacity: 1 }, cursor: "pointer" };
     const tooltip = [{ field: "colour", type: "nominal", title: colour.title }, ...exact.encoding.tooltip];
-    const lines = { transform: exact.transform, mark, encoding: { ...exact.encoding, color: colour, tooltip } };
-    const grey = others.map(neutral).map((view) => (view.name === "band" ? { ...view, mark: { ...view.mark, color: "#999999" } } : view));
+    const lines = { ...exact, encoding: { ...exact.encoding, color: colour, tooltip } };
+    const grey = others.map((view) => {
+      const { color, ...encoding } = view.encoding;
+      return color ? { ...view, mark: { ...view.mark, color: "#777777" }, encoding } : view;
+    });
     return { ...whole, layer: [...grey, lines] };
   }
 

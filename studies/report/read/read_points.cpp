@@ -10,6 +10,7 @@
 #include "sim/error.h"
 #include "sim/mapped.h"
 #include "studies/report/model/cycle_groups.h"
+#include "studies/report/model/point_bounds.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/read/axis_order.h"
 #include "studies/sweep/plan/axis_text.h"
@@ -247,6 +248,10 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
       add_percentiles(*row, point);
     }
     point.frame = frames.number_of(point.machine);
+    point.figures["bound"] = bound_of(point);
+    if (const std::optional<double> nodes = saturation_of(point)) {
+      point.figures["saturation"] = *nodes;
+    }
   }
   sweep.frames = frames.count();
   for (const AxisColumn& column : order_axes(reader.axes(), values)) {
