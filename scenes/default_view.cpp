@@ -2,10 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace marti::scenes {
+
+namespace {
+
+/// Whether any triangle shines; one without an area does not.
+bool has_emitters(const Scene& scene) {
+  return std::any_of(scene.triangles.begin(), scene.triangles.end(), [&scene](const Triangle& triangle) {
+    const auto corner = [&](std::size_t i) { return scene.positions[triangle.vertex.at(i)]; };
+    return scene.materials[triangle.material].emission != glm::dvec3(0.0) &&
+           !has_no_area(corner(0), corner(1), corner(2));
+  });
+}
+
+}  // namespace
 
 void frame_camera(Scene& scene) {
   const Bounds bounds = bounds_of(scene);
@@ -18,7 +33,24 @@ void frame_camera(Scene& scene) {
   scene.camera.eye = center + distance * glm::normalize(glm::dvec3(0.5, 0.4, 1.0));
 }
 
-void add_default_light(Scene& scene) {
+bool add_default_light(Scene& scene, const FileOptions& options) {
+  constexpr const char* added = "a directional one over the camera's shoulder and by ambient light";
+  const bool lacks_light = scene.lights.empty() && !scene.lights_are_all;
+  const bool emits = lacks_light && has_emitters(scene);
+  const bool dark = lacks_light && !(emits && options.emitters_light);
+  if (options.default_light == DefaultLight::never) {
+    return false;
+  }
+  if (options.default_light == DefaultLight::always) {
+    scene.notes.push_back(std::string("Besides its own lights the scene is lit by ") + added +
+                          ": scene.default_light = \"always\".");
+  } else if (dark) {
+    scene.notes.push_back(std::string("The scene has no light") +
+                          (emits ? " but surfaces that shine, by which only paths are lit" : "") +
+                          "; it is lit by " + added + ".");
+  } else {
+    return false;
+  }
   const glm::dvec3 sight = glm::normalize(scene.camera.at - scene.camera.eye);
   const glm::dvec3 right = glm::normalize(glm::cross(sight, scene.camera.up));
   const glm::dvec3 up = glm::cross(right, sight);
@@ -27,7 +59,8 @@ void add_default_light(Scene& scene) {
   light.direction = glm::normalize(sight + 0.4 * right - 0.6 * up);
   light.color = glm::dvec3(0.8);
   scene.lights.push_back(light);
-  scene.ambient = glm::dvec3(0.2);
+  scene.ambient = glm::max(scene.ambient, glm::dvec3(0.2));
+  return true;
 }
 
 }  // namespace marti::scenes

@@ -1,13 +1,19 @@
 // What the readers of scene files are told: which parts to use, how images are read, and the limits.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "scenes/texture.h"
 #include "sim/memory_budget.h"
 
 namespace marti::scenes {
+
+/// Whether a scene is given a directional light over the camera's shoulder and ambient light.
+enum class DefaultLight : std::uint8_t { automatic, always, never };
+inline constexpr std::array<std::string_view, 3> default_light_names = {"auto", "always", "never"};
 
 struct FileOptions {
   std::string scene;   ///< index or name; empty: the file's default, else the first
@@ -16,6 +22,9 @@ struct FileOptions {
   /// pose, unless an animation has that name.
   std::string animation;
   double time = 0.0;  ///< of the pose that is asked for: seconds from the animation's beginning
+  /// automatic: only a scene that has no light and does not say that none is missing (Scene::lights_are_all).
+  DefaultLight default_light = DefaultLight::automatic;
+  bool emitters_light = false;  ///< triangles that emit light count as lights: paths find them
   /// If set, images are not decoded: textures have their size and their file, but no texels (see
   /// decode_texels).
   ImageSizer size_only;

@@ -38,11 +38,13 @@ void note_extensions(const Model& model, Scene& scene) {
   }
 }
 
-/// Reads what the exporter stores in `extras`: background and ambient light.
+/// Reads what the exporter stores in `extras`: background, ambient light, and whether any light is missing.
 void read_own_surroundings(const Model& model, Scene& scene) {
   if (const tinygltf::Value* own = gltf::own_extras(model.data().extras)) {
     scene.background = gltf::color_in(*own, "background", 0.0, 1e9).value_or(scene.background);
     scene.ambient = gltf::color_in(*own, "ambient", 0.0, 1e9).value_or(scene.ambient);
+    scene.lights_are_all = own->Has("lights_are_all") && own->Get("lights_are_all").IsBool() &&
+                           own->Get("lights_are_all").Get<bool>();
   }
 }
 
@@ -199,7 +201,8 @@ class GltfPoses : public PoseSource {
     }
   }
 
-  /// Sets camera and lights, with default ones if the file has none; those do not move.
+  /// Sets camera and lights, with default ones if the file has none and the options ask for them; those do
+  /// not move.
   void look(const Pose& pose) {
     has_camera_ = gltf::set_camera(model_, pose.nodes, still_);
     if (!has_camera_) {
@@ -211,9 +214,8 @@ class GltfPoses : public PoseSource {
     }
     gltf::add_lights(model_, pose.nodes, still_);
     has_lights_ = !still_.lights.empty();
-    if (!has_lights_) {
-      add_default_light(still_);
-      still_.notes.emplace_back(no_light_note);
+    if (add_default_light(still_, model_.options())) {
+      default_light_ = still_.lights.back();
     }
   }
 
@@ -254,6 +256,9 @@ class GltfPoses : public PoseSource {
     if (has_lights_) {
       scene.lights.clear();
       gltf::add_lights(model_, pose.nodes, scene);
+      if (default_light_) {
+        scene.lights.push_back(*default_light_);
+      }
     }
     if (shrunk > 0) {
       scene.notes.push_back(std::to_string(shrunk) +
@@ -275,7 +280,8 @@ class GltfPoses : public PoseSource {
   std::uint64_t morph_targets_ = 0;
   FileUse use_;
   bool has_camera_ = false;
-  bool has_lights_ = false;
+  bool has_lights_ = false;             // of the file
+  std::optional<Light> default_light_;  // beside them
 };
 
 }  // namespace

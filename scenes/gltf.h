@@ -14,7 +14,7 @@
 // triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A
 // node that is mirrored by its transform reverses the winding of its triangles; the transform of a skinned
 // mesh's node is ignored, including its mirroring. A vertex's joint weights are divided by their sum. If the
-// file has no camera or no light, a default one is made for the pose at time 0 and does not move.
+// file has no camera, or a light is added to its own, that is made for the pose at time 0 and does not move.
 //
 // Materials. With base colour c, metallic m, roughness r, transmission t, index of refraction n,
 // F0 = ((n-1)/(n+1))^2 and gloss g = (1-r)^2, our weights are
@@ -40,10 +40,11 @@
 
 namespace marti::scenes {
 
-/// Opens a file. A scene without a camera or a light gets one that frames it, and a note. Triangles with a
-/// position that is not finite are left out, and a note counts them; degenerate ones are kept and counted.
-/// `decode` may be empty; then a material with a base colour texture is refused. Throws UserError, the path
-/// first, for anything missing, broken, out of range or not supported; no input makes it crash or loop. Of
+/// Opens a file. A scene without a camera gets one that frames it, one without lights what
+/// FileOptions::default_light says, with a note each. Triangles with a position that is not finite are left
+/// out, and a note counts them; degenerate ones are kept and counted. `decode` may be empty; then a material
+/// with a base colour texture is refused. Throws UserError, the path first, for anything missing, broken, out
+/// of range or not supported; no input makes it crash or loop. Of
 /// several animations only the chosen one is checked; facts() checks all.
 [[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& options,
                                       const ImageDecoder& decode);

@@ -60,8 +60,9 @@ class Exporter {
     for (const Light& light : scene_.lights) {
       add_light(light);
     }
-    model_.extras =
-        own_extras({{"background", array_of(scene_.background)}, {"ambient", array_of(scene_.ambient)}});
+    model_.extras = own_extras({{"background", array_of(scene_.background)},
+                                {"ambient", array_of(scene_.ambient)},
+                                {"lights_are_all", Value(scene_.lights_are_all)}});
     if (model_.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (1U << 30)) {
       fail("the scene is too large for binary glTF, which ends at 4 GiB");
     }
@@ -103,9 +104,10 @@ class Exporter {
     return static_cast<int>(model_.accessors.size() - 1);
   }
 
-  /// Adds an attribute of 32-bit floats, from vectors of `N` doubles.
+  /// Adds an attribute of 32-bit floats, from vectors of `N` doubles; the doubles too, if they are not equal.
   template <int N, typename Vector>
-  int add_attribute(const std::vector<Vector>& values, int type, bool with_bounds) {
+  void add_attribute(const char* name, const std::vector<Vector>& values, int type, bool with_bounds) {
+    bool equal = true;
     std::vector<float> floats;
     floats.reserve(values.size() * N);
     std::vector<double> lowest(N, std::numeric_limits<double>::infinity());
@@ -117,18 +119,21 @@ class Exporter {
           fail("a coordinate is too large for glTF's 32-bit numbers");
         }
         floats.push_back(narrow);
+        equal = equal && static_cast<double>(narrow) == value[i];
         const auto at = static_cast<std::size_t>(i);
         lowest[at] = std::min(lowest[at], static_cast<double>(narrow));
         highest[at] = std::max(highest[at], static_cast<double>(narrow));
       }
     }
     const int view = add_view(floats.data(), floats.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
-    const int accessor = add_accessor(view, TINYGLTF_COMPONENT_TYPE_FLOAT, type, values.size());
+    attributes_[name] = add_accessor(view, TINYGLTF_COMPONENT_TYPE_FLOAT, type, values.size());
     if (with_bounds) {
       model_.accessors.back().minValues = lowest;
       model_.accessors.back().maxValues = highest;
     }
-    return accessor;
+    if (!equal) {
+      exact_[name] = Value(add_view(values.data(), values.size() * sizeof(Vector), 0));
+    }
   }
 
   /// The order in which triangles are written: unchanged, unless they form too many runs of one material.
@@ -148,13 +153,12 @@ class Exporter {
   }
 
   void add_mesh() {
-    std::map<std::string, int> attributes;
-    attributes["POSITION"] = add_attribute<3>(scene_.positions, TINYGLTF_TYPE_VEC3, true);
+    add_attribute<3>("POSITION", scene_.positions, TINYGLTF_TYPE_VEC3, true);
     if (!scene_.normals.empty()) {
-      attributes["NORMAL"] = add_attribute<3>(scene_.normals, TINYGLTF_TYPE_VEC3, false);
+      add_attribute<3>("NORMAL", scene_.normals, TINYGLTF_TYPE_VEC3, false);
     }
     if (!scene_.uvs.empty()) {
-      attributes["TEXCOORD_0"] = add_attribute<2>(scene_.uvs, TINYGLTF_TYPE_VEC2, false);
+      add_attribute<2>("TEXCOORD_0", scene_.uvs, TINYGLTF_TYPE_VEC2, false);
     }
     tinygltf::Mesh mesh;
     mesh.name = scene_.name;
@@ -167,7 +171,10 @@ class Exporter {
         const int view = add_view(indices.data(), indices.size() * sizeof(std::uint32_t),
                                   TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
         tinygltf::Primitive primitive;
-        primitive.attributes = attributes;
+        primitive.attributes = attributes_;
+        if (!exact_.empty()) {
+          primitive.extras = own_extras(exact_);
+        }
         primitive.indices =
             add_accessor(view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, indices.size());
         primitive.material = static_cast<int>(triangle.material);
@@ -278,6 +285,7 @@ class Exporter {
     camera.perspective.zfar =
         2.0 * (glm::length(bounds.hi - bounds.lo) + glm::length(scene_.camera.eye - bounds.lo)) + 1.0;
     camera.perspective.znear = camera.perspective.zfar * 1e-5;
+    camera.extras = own_extras({{"at", array_of(scene_.camera.at)}, {"up", array_of(scene_.camera.up)}});
     model_.cameras.push_back(camera);
     tinygltf::Node node;
     node.camera = 0;
@@ -299,9 +307,11 @@ class Exporter {
       light.spot.innerConeAngle = std::acos(std::clamp(source.cos_inner_cone, -1.0, 1.0));
       light.spot.outerConeAngle = std::acos(std::clamp(source.cos_outer_cone, -1.0, 1.0));
     }
-    if (source.kind != LightKind::directional && !source.inverse_square) {
-      light.extras = own_extras({{"inverse_square", Value(false)}});
-    }
+    light.extras = own_extras({{"color", array_of(source.color)},
+                               {"direction", array_of(source.direction)},
+                               {"cos_inner_cone", Value(source.cos_inner_cone)},
+                               {"cos_outer_cone", Value(source.cos_outer_cone)},
+                               {"inverse_square", Value(source.inverse_square)}});
     tinygltf::Node node;
     if (source.kind == LightKind::point) {
       node.translation = numbers_of(source.position);
@@ -320,6 +330,8 @@ class Exporter {
   const std::filesystem::path& path_;
   const ImageEncoder& encode_;
   tinygltf::Model model_;
+  std::map<std::string, int> attributes_;
+  Value::Object exact_;  // by attribute, the buffer view of its doubles
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/gltf_animation.h"
+#include "scenes/gltf_exact.h"
 #include "scenes/gltf_extensions.h"
 
 namespace marti::scenes::gltf {
@@ -58,12 +59,13 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   }
   left_out_.features["vertex colours"] += attribute(primitive.attributes, "COLOR_0") >= 0 ? 1U : 0U;
   const Materials::Use use = materials_.use(primitive.material);
-  int coordinates = -1;
+  Coordinates coordinates;
   if (use.texture_coordinates >= 0) {
     const std::string semantic = "TEXCOORD_" + std::to_string(use.texture_coordinates);
-    coordinates = attribute(primitive.attributes, semantic);
+    coordinates = {attribute(primitive.attributes, semantic),
+                   exact_view(model_, primitive.extras, "TEXCOORD_0")};
     left_out_.features["textures on primitives without the texture coordinates for them"] +=
-        coordinates < 0 ? 1U : 0U;
+        coordinates.accessor < 0 ? 1U : 0U;
     for (const auto& target : primitive.targets) {
       left_out_.features["displacements of texture coordinates"] += target.contains(semantic) ? 1U : 0U;
     }
@@ -124,8 +126,9 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   }
 }
 
-MeshReader::Vertices MeshReader::add_vertices(std::shared_ptr<const VertexSource> source, int coordinates,
-                                              const Pose& pose, const std::string& name, const User& user) {
+MeshReader::Vertices MeshReader::add_vertices(std::shared_ptr<const VertexSource> source,
+                                              Coordinates coordinates, const Pose& pose,
+                                              const std::string& name, const User& user) {
   const std::size_t count = source->positions.size();
   if (scene_.positions.size() + count > model_.options().max_triangles) {
     model_.fail("the scene has more than " + std::to_string(model_.options().max_triangles) +
@@ -141,14 +144,15 @@ MeshReader::Vertices MeshReader::add_vertices(std::shared_ptr<const VertexSource
   }
   instances_.push_back({std::move(source), vertices.first, user.place, user.skin, user.weights});
   pose_vertices(instances_.back(), pose, scene_, bad_vertex_);
-  if (coordinates >= 0) {
+  if (coordinates.accessor >= 0) {
     add_coordinates(coordinates, vertices, name);
   }
   return vertices;
 }
 
-void MeshReader::add_coordinates(int accessor, const Vertices& vertices, const std::string& name) {
-  const std::vector<double> values = model_.read_values(accessor, 2, name + ": TEXCOORD");
+void MeshReader::add_coordinates(Coordinates coordinates, const Vertices& vertices, const std::string& name) {
+  std::vector<double> values = model_.read_values(coordinates.accessor, 2, name + ": TEXCOORD");
+  restore_values(model_, coordinates.exact, name + ": TEXCOORD", values);
   if (values.size() / 2 != vertices.count) {
     model_.fail(name + ": it has " + std::to_string(vertices.count) + " positions, but " +
                 std::to_string(values.size() / 2) + " texture coordinates");

@@ -1,6 +1,7 @@
 // Internal to scenes/: meshes of a glTF file as triangles of a scene.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -53,19 +54,23 @@ class MeshReader {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
+  struct Coordinates {  // of textures
+    int accessor = -1;
+    int exact = -1;  // the buffer view of exact_view()
+    auto operator<=>(const Coordinates&) const = default;
+  };
   struct User {  // the node whose mesh is added
     std::size_t place = 0;
     int skin = -1;
     const std::vector<double>* weights = nullptr;
-    // by their source, and the accessor of texture coordinates
-    std::map<std::pair<const VertexSource*, int>, Vertices> shared;
+    std::map<std::pair<const VertexSource*, Coordinates>, Vertices> shared;
   };
 
   void add_primitive(const tinygltf::Primitive& primitive, const Pose& pose, const std::string& name,
                      User& user);
-  Vertices add_vertices(std::shared_ptr<const VertexSource> source, int coordinates, const Pose& pose,
+  Vertices add_vertices(std::shared_ptr<const VertexSource> source, Coordinates coordinates, const Pose& pose,
                         const std::string& name, const User& user);
-  void add_coordinates(int accessor, const Vertices& vertices, const std::string& name);
+  void add_coordinates(Coordinates coordinates, const Vertices& vertices, const std::string& name);
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
 
   const Model& model_;

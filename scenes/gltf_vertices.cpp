@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "scenes/gltf_exact.h"
 #include "scenes/vertex_values.h"
 
 namespace marti::scenes::gltf {
@@ -89,6 +90,10 @@ std::shared_ptr<const VertexSource> VertexReader::read(const tinygltf::Primitive
     key.push_back(attribute(target, "NORMAL"));
   }
   key.push_back(next_section);
+  const int exact_positions = exact_view(model_, primitive.extras, "POSITION");
+  const int exact_normals = exact_view(model_, primitive.extras, "NORMAL");
+  key.push_back(exact_positions);
+  key.push_back(exact_normals);
   const std::size_t sets = skinned ? influence_sets(model_, primitive, name) : 0;
   for (std::size_t set = 0; set < sets; ++set) {
     for (const char* semantic : {"JOINTS", "WEIGHTS"}) {
@@ -105,13 +110,10 @@ std::shared_ptr<const VertexSource> VertexReader::read(const tinygltf::Primitive
   }
 
   auto source = std::make_shared<VertexSource>();
-  const std::vector<double> values = model_.read_values(key[0], 3, name + ": POSITION");
-  for (std::size_t i = 0; i < values.size(); i += 3) {
-    source->positions.emplace_back(values[i], values[i + 1], values[i + 2]);
-  }
+  source->positions = read_vectors(key[0], exact_positions, name + ": POSITION");
   const std::size_t count = source->positions.size();
   if (key[1] >= 0) {
-    source->normals = read_vectors(key[1], count, name + ": NORMAL", "normals");
+    source->normals = read_counted(key[1], exact_normals, count, name + ": NORMAL", "normals");
   }
   charge(count * (primitive.targets.size() + 4 * sets));
   read_targets(primitive, *source, name);
@@ -130,17 +132,23 @@ void VertexReader::charge(std::uint64_t work) {
   }
 }
 
-std::vector<glm::dvec3> VertexReader::read_vectors(int accessor, std::size_t count, const std::string& name,
-                                                   const char* what) const {
-  const std::vector<double> values = model_.read_values(accessor, 3, name);
-  if (values.size() / 3 != count) {
-    model_.fail(name + ": there are " + std::to_string(count) + " positions, but " +
-                std::to_string(values.size() / 3) + " " + what);
-  }
+std::vector<glm::dvec3> VertexReader::read_vectors(int accessor, int exact, const std::string& name) const {
+  std::vector<double> values = model_.read_values(accessor, 3, name);
+  restore_values(model_, exact, name, values);
   std::vector<glm::dvec3> vectors;
-  vectors.reserve(count);
+  vectors.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3) {
     vectors.emplace_back(values[i], values[i + 1], values[i + 2]);
+  }
+  return vectors;
+}
+
+std::vector<glm::dvec3> VertexReader::read_counted(int accessor, int exact, std::size_t count,
+                                                   const std::string& name, const char* what) const {
+  std::vector<glm::dvec3> vectors = read_vectors(accessor, exact, name);
+  if (vectors.size() != count) {
+    model_.fail(name + ": there are " + std::to_string(count) + " positions, but " +
+                std::to_string(vectors.size()) + " " + what);
   }
   return vectors;
 }
@@ -152,13 +160,13 @@ void VertexReader::read_targets(const tinygltf::Primitive& primitive, VertexSour
     const std::string user = name + ", morph target " + std::to_string(i);
     MorphTarget& target = source.targets.emplace_back();
     if (from.contains("POSITION")) {
-      target.positions =
-          read_vectors(from.at("POSITION"), source.positions.size(), user + ": POSITION", "displacements");
+      target.positions = read_counted(from.at("POSITION"), -1, source.positions.size(), user + ": POSITION",
+                                      "displacements");
     }
     // Without normals of the mesh, triangles use their own, and displacements of normals are ignored.
     if (from.contains("NORMAL") && !source.normals.empty()) {
       target.normals =
-          read_vectors(from.at("NORMAL"), source.positions.size(), user + ": NORMAL", "displacements");
+          read_counted(from.at("NORMAL"), -1, source.positions.size(), user + ": NORMAL", "displacements");
     }
   }
 }

@@ -76,7 +76,10 @@ class VertexReader {
  private:
   using Key = std::vector<int>;  // all accessors with data of the vertices
   void charge(std::uint64_t work);
-  std::vector<glm::dvec3> read_vectors(int accessor, std::size_t count, const std::string& name,
+  /// `exact`: the buffer view of exact_view(), or -1.
+  std::vector<glm::dvec3> read_vectors(int accessor, int exact, const std::string& name) const;
+  /// As many vectors as there are positions; `what` names them in the plural.
+  std::vector<glm::dvec3> read_counted(int accessor, int exact, std::size_t count, const std::string& name,
                                        const char* what) const;
   void read_targets(const tinygltf::Primitive& primitive, VertexSource& source,
                     const std::string& name) const;

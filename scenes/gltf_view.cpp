@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "scenes/gltf_exact.h"
 #include "scenes/gltf_material.h"
 #include "sim/error.h"
 #include "sim/shown.h"
@@ -71,11 +72,6 @@ Light convert_light(const Model& model, int index, const PlacedNode& place) {
   }
   light.range = checked_number(model, source.range, 0.0, largest_distance, name + ": its range");
   light.inverse_square = light.kind != LightKind::directional;
-  if (const tinygltf::Value* own = own_extras(source.extras)) {
-    if (own->Has("inverse_square") && own->Get("inverse_square").IsBool()) {
-      light.inverse_square = light.inverse_square && own->Get("inverse_square").Get<bool>();
-    }
-  }
   if (light.kind == LightKind::spot) {
     const double outer = checked_number(model, source.spot.outerConeAngle, 0.0, std::numbers::pi / 2.0 + 1e-9,
                                         name + ": its outer cone");
@@ -83,6 +79,12 @@ Light convert_light(const Model& model, int index, const PlacedNode& place) {
         checked_number(model, source.spot.innerConeAngle, 0.0, outer, name + ": its inner cone");
     light.cos_inner_cone = std::cos(inner);
     light.cos_outer_cone = std::cos(outer);
+  }
+  if (const tinygltf::Value* own = own_extras(source.extras)) {
+    restore_light(*own, light);
+    if (own->Has("inverse_square") && own->Get("inverse_square").IsBool()) {
+      light.inverse_square = light.inverse_square && own->Get("inverse_square").Get<bool>();
+    }
   }
   return light;
 }
@@ -111,6 +113,9 @@ Camera convert_camera(const Model& model, const PlacedNode& place, int index) {
     static_cast<void>(camera.image_plane(1, 1));
   } catch (const sim::UserError& error) {
     model.fail(name + ": " + error.what());
+  }
+  if (const tinygltf::Value* own = own_extras(source.extras)) {
+    restore_camera(*own, camera);
   }
   return camera;
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <utility>
 
+#include "scenes/default_view.h"
 #include "scenes/gltf.h"
 #include "scenes/obj.h"
 #include "scenes/part_error.h"
@@ -61,6 +62,7 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
   }
   Scene scene = make_procedural(spec, options.file.memory);
   refuse_parts(spec, "a procedural scene", options.file);
+  add_default_light(scene, options.file);
   return AnimatedScene(std::move(scene));
 }
 

@@ -112,8 +112,7 @@ void PolygonMesh::finish(const LeftOut& left_out) {
   scene_.name = file_.path().filename().string();
   frame_camera(scene_);
   scene_.notes.emplace_back(no_camera_note);
-  add_default_light(scene_);
-  scene_.notes.emplace_back(no_light_note);
+  add_default_light(scene_, file_.options());
   note_left_out(left_out, scene_);
   note_bad_positions(bad_, "polygons", scene_);
   if (crossing_ > 0) {

@@ -40,7 +40,8 @@ class PolygonMesh {
   bool add(std::span<const std::uint32_t> vertices, std::span<const glm::dvec3> positions,
            std::uint32_t material);
 
-  /// Gives the scene a camera, a light and its notes. Throws UserError when it has no triangles.
+  /// Gives the scene a camera, a light if the options ask for one, and its notes. Throws UserError when it
+  /// has no triangles.
   void finish(const LeftOut& left_out);
 
  private:

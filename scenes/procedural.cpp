@@ -220,6 +220,7 @@ Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory) {
                  "take a smaller scene");
   Scene scene = make(kind.name, size, !has_variant);
   scene.name = kind.name;
+  scene.lights_are_all = true;
   if (kind.minimum_size != kind.maximum_size) {
     scene.name += ":" + std::to_string(size);
   }

@@ -89,6 +89,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
+  bool lights_are_all =
+      false;  ///< none is missing, even if there is none: a recipe's, and a file's that says so
   Camera camera;
   glm::dvec3 background{0.0};
   glm::dvec3 ambient{0.0};         ///< ambient light, multiplied by a material's colour and diffuse weight

@@ -16,9 +16,14 @@ inline constexpr double largest_coordinate = 1e30;
          std::abs(p.z) <= largest_coordinate;
 }
 
-/// A unit vector along n, or zero if n has no direction.
+/// A unit vector along n, or zero if n has no direction. One that is of unit length up to rounding stays as
+/// it is, so that reading what was written changes no bit.
 [[nodiscard]] inline glm::dvec3 unit_or_zero(const glm::dvec3& n) {
-  const glm::dvec3 unit = n / glm::length(n);
+  const double length = glm::length(n);
+  if (std::abs(length - 1.0) <= 0x1p-50) {
+    return n;
+  }
+  const glm::dvec3 unit = n / length;
   const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
                       std::abs(glm::length(unit) - 1.0) < 1e-6;
   return usable ? unit : glm::dvec3(0.0);

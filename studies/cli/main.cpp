@@ -472,6 +472,8 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
     if (!arguments.target.ends_with(".glb")) {
       throw sim::UserError(arguments.target + ": the name of a binary glTF file must end in .glb");
     }
+    // A light that only the reader adds is no part of the scene; the file's reader adds it again.
+    arguments.file.default_light = scenes::DefaultLight::never;
     scenes::Scene source = open(arguments);
     sim::refuse_input(arguments.target);
     scenes::tessellate(source);

@@ -81,6 +81,10 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.text("scene.animation", "",
               "animation of the file that plays, by index or name; empty: the first, if there is one; none: "
               "the file's static pose");
+  schema.choice("scene.default_light", "auto", names(scenes::default_light_names),
+                "auto: a file without lights gets one over the camera's shoulder and ambient light, with "
+                "image.integrator = \"path\" only if no triangle of it emits light; always: every scene "
+                "gets them beside its own; never: none does");
   schema.section("frames", "the frames of an animated scene");
   schema.integer("frames.count", 1, {1, 1'000'000}, "frames", "how many; `marti run` renders one");
   schema.integer("frames.first", 0, {0, 1'000'000'000}, "",
@@ -192,6 +196,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.open.file.scene = config.text("scene.scene");
   frame.open.file.camera = config.text("scene.camera");
   frame.open.file.animation = config.text("scene.animation");
+  frame.open.file.default_light = config.choice_as<scenes::DefaultLight>("scene.default_light");
   frame.frames.count = count(config, "frames.count");
   frame.frames.first = count(config, "frames.first");
   frame.frames.rate = config.real("frames.rate");
@@ -211,6 +216,7 @@ FrameConfig read_frame(sim::Config& config) {
     frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
   }
   config.mark_unused_reason("image.seed", "one sample lies in the pixel's centre", "image.samples");
+  frame.open.file.emitters_light = path;
   frame.render.shadows = config.boolean("image.shadows");
   frame.render.voxel_cut = config.real("image.voxel_cut");
   if (frame.render.voxel_cut > 0.0) {
