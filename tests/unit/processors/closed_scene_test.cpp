@@ -3,15 +3,20 @@
 // rounding can tell, are the hard ones; all structures treat them alike, so comparing structures does not
 // find them.
 #include <cmath>
+#include <iomanip>
 #include <numbers>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
 #include "processors/program/render.h"
 #include "program_scenes.h"
-#include "sim/error.h"
+#include "tests/unit/scenes/gltf_file.h"
+#include "tests/unit/scenes/text_scene.h"
 
 namespace marti::processors {
 
@@ -69,17 +74,63 @@ void add_sphere(scenes::Scene& scene, const glm::dvec3& center, double radius, i
   };
   for (int ring = 0; ring < parts; ++ring) {
     for (int step = 0; step < 2 * parts; ++step) {
+      if (ring > 0 && ring + 1 < parts) {
+        test::add_quad(scene, point(ring, step), point(ring + 1, step), point(ring + 1, step + 1),
+                       point(ring, step + 1), 0);
+        continue;
+      }
       const auto first = static_cast<std::uint32_t>(scene.positions.size());
       scene.positions.insert(scene.positions.end(), {point(ring, step), point(ring + 1, step),
-                                                     point(ring + 1, step + 1), point(ring, step + 1)});
-      if (ring > 0) {
-        scene.triangles.push_back({{first, first + 1, first + 3}, 0, 0});
-      }
-      if (ring + 1 < parts) {
-        scene.triangles.push_back({{first + 1, first + 2, first + 3}, 0, 0});
-      }
+                                                     point(ring == 0 ? 1 : ring, step + 1)});
+      scene.triangles.push_back(
+          {{first, first + 1, first + 2}, 0, static_cast<std::uint32_t>(scene.polygons++)});
     }
   }
+}
+
+/// The polygons with all digits of their corners.
+std::string obj_of(const scenes::Scene& scene) {
+  std::ostringstream text;
+  text << std::setprecision(17);
+  for (const glm::dvec3& p : scene.positions) {
+    text << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  }
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    const scenes::Triangle& triangle = scene.triangles[t];
+    const bool goes_on = t > 0 && scene.triangles[t - 1].polygon == triangle.polygon;
+    text << (goes_on ? "" : "\nf");
+    for (std::size_t i = goes_on ? 2 : 0; i < 3; ++i) {
+      text << ' ' << triangle.vertex.at(i) + 1;
+    }
+  }
+  return text.str() + "\n";
+}
+
+/// The triangles in floats, relative to a node at `center`.
+std::string gltf_of(const scenes::Scene& scene, const glm::dvec3& center) {
+  scenes::testing::GltfFile file;
+  std::vector<float> values;
+  for (const scenes::Triangle& triangle : scene.triangles) {
+    for (const std::uint32_t vertex : triangle.vertex) {
+      const glm::vec3 p(scene.positions[vertex] - center);
+      values.insert(values.end(), {p.x, p.y, p.z});
+    }
+  }
+  file.json["nodes"][0]["translation"] = {center.x, center.y, center.z};
+  file.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", file.add_positions(values)}}}}}}}};
+  return file.glb();
+}
+
+/// The scene with its triangles as a file has them.
+scenes::Scene through(const std::string& form, scenes::Scene scene, const glm::dvec3& center) {
+  const scenes::testing::SceneFolder folder;
+  const scenes::Scene read =
+      form == "OBJ" ? folder.open("a.obj", obj_of(scene))
+                    : folder.open("a.glb", gltf_of(scene, form == "moved glTF" ? center : glm::dvec3(0.0)));
+  EXPECT_EQ(read.triangles.size(), scene.triangles.size());
+  scene.positions = read.positions;
+  scene.triangles = read.triangles;
+  return scene;
 }
 
 struct Lost {
@@ -106,7 +157,13 @@ Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats) {
 }
 
 // The camera is not turned, so rays of its diagonals and axes meet edges and corners exactly.
-TEST(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
+class ClosedScenes : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Forms, ClosedScenes, testing::Values("built", "glTF", "moved glTF", "OBJ"),
+                         [](const auto& form) {
+                           return std::string(1, form.param[0]) + std::to_string(form.index);
+                         });
+
+TEST_P(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
   for (const double far : {0.0, 1000.0, 1e6}) {
     const glm::dvec3 center(far, far, far);
     for (const std::string body : {"cube", "divided cube", "flat box", "sphere"}) {
@@ -116,6 +173,9 @@ TEST(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
       } else {
         add_box(scene, center, body == "flat box" ? glm::dvec3(3.0, 0.7, 1.3) : glm::dvec3(1.0),
                 body == "cube" ? 1 : 5);
+      }
+      if (GetParam() != std::string("built")) {
+        scene = through(GetParam(), std::move(scene), center);
       }
       for (const Integrator integrator : {Integrator::whitted, Integrator::path}) {
         for (const bool floats : {false, true}) {
