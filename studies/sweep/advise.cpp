@@ -25,6 +25,12 @@ constexpr std::size_t most_advised = 12;
 constexpr std::size_t least_advised = 2;
 constexpr helps::Work least_work = 100'000'000;  // for one machine; enough for a small frame
 constexpr helps::Work part_of_sweep = 10;
+constexpr helps::Work replays_of_one = 16;  // that a machine's advice should have, at least
+
+// About the nanoseconds of a replay (studies/helps/work.h) by the machine's counters: in a sweep, where
+// machines share stripped logs, and alone. Found by timing 1,000 machines of configs/sweep.toml.
+constexpr const char* replay_of_sweep = "2 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 25 * events";
+constexpr const char* replay_alone = "4 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 80 * events";
 
 // Whether two frames were rendered alike: trees that were built otherwise give the same rays and pixels.
 bool is_same_work(const FrameRow& a, const FrameRow& b) {
@@ -105,26 +111,27 @@ Advice measure(const SweepPlan& plan, const SweepMachine& machine, const process
 }  // namespace
 
 void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& memory,
-            const std::function<std::shared_ptr<const FrameLog>(std::size_t)>& trace,
+            const std::function<FrameLog(std::size_t)>& trace,
             const std::function<void(std::size_t, const Advice&)>& save) {
   if (plan.points.empty()) {
     return;
   }
   std::vector<std::size_t> machines = machines_that_matter(plan, store);
-  const std::vector<std::int64_t> work =
-      store.sums("4 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 80 * events");
-  const helps::Work budget = std::reduce(work.begin(), work.end(), helps::Work{0}) / part_of_sweep;
+  const std::vector<std::int64_t> taken = store.sums(replay_of_sweep);
+  const helps::Work budget = std::reduce(taken.begin(), taken.end(), helps::Work{0}) / part_of_sweep;
+  const auto enough = std::max(
+      least_work, replays_of_one * static_cast<helps::Work>(store.sums(replay_alone)[machines.front()]));
   machines.resize(
-      std::min(machines.size(), std::clamp<std::size_t>(budget / least_work, least_advised, most_advised)));
+      std::min(machines.size(), std::clamp<std::size_t>(budget / enough, least_advised, most_advised)));
   const std::vector<bool> advised = store.advised();
   for (const std::size_t index : machines) {
     if (advised[index]) {
       continue;
     }
     const SweepMachine& machine = plan.machines[index];
-    const std::shared_ptr<const FrameLog> log = trace(machine.frame);
-    const std::uint64_t taken = std::min(memory.left(), memory_of(*log->log));
-    save(index, measure(plan, machine, *log->log, sim::MemoryBudget(memory.left() - taken),
+    const FrameLog frame = trace(machine.frame);
+    const std::uint64_t taken = std::min(memory.left(), memory_of(*frame.log));
+    save(index, measure(plan, machine, *frame.log, sim::MemoryBudget(memory.left() - taken),
                         std::max(least_work, budget / machines.size())));
   }
 }

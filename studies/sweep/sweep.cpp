@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <thread>
@@ -22,9 +24,7 @@
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/store_parts.h"
 #include "studies/sweep/store/sweep_store.h"
-#include "studies/sweep/sweep_outlook.h"
-#include "studies/sweep/work/coordinator.h"
-#include "studies/sweep/work/sweep_worker.h"
+#include "studies/sweep/work/timing_loop.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite_connection.h"
@@ -44,6 +44,33 @@ void refuse_large_machines(const SweepPlan& plan, const sim::MemoryBudget& memor
 
 unsigned threads_of(const SweepOptions& options) {
   return options.threads != 0 ? options.threads : threads_beside();
+}
+
+// Which frames must be traced: those that machines are still to be timed on, and those without a row.
+std::vector<bool> frames_needed(const SweepPlan& plan, const WorkDone& done) {
+  std::vector<bool> needed = done.frames;
+  needed.flip();
+  for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
+    if (!done.machines[machine]) {
+      needed[plan.machines[machine].frame] = true;
+    }
+  }
+  return needed;
+}
+
+SweepOutlook outlook_of(const SweepPlan& plan, const WorkDone& done, unsigned threads) {
+  std::vector<std::uint64_t> bytes;
+  for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
+    if (!done.machines[machine]) {
+      bytes.push_back(processors::replay::host_bytes(plan.machines[machine].config));
+    }
+  }
+  const auto largest =
+      bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(threads, bytes.size()));
+  std::partial_sort(bytes.begin(), largest, bytes.end(), std::greater<>());
+  return {static_cast<std::size_t>(std::ranges::count(done.machines, true)),
+          static_cast<std::size_t>(std::ranges::count(frames_needed(plan, done), false)),
+          std::reduce(bytes.begin(), largest, std::uint64_t{0})};
 }
 
 // Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,
@@ -70,23 +97,21 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   const bool is_new = !is_begun(report.store);
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
   std::optional<SweepStore> store;
-  SweepOutlook outlook;
+  WorkDone done;
   {
     const host::AtSignal unlocked(unlock);
     store.emplace(report.store, plan, &*lock);
     for (const std::filesystem::path& part : parts) {
       store->merge(part);
     }
-    outlook = outlook_of(plan, store->done(), store->frames_done(), threads_of(options));
-    say(outlook);
+    done = {store->done(), store->frames_done()};
+    say(outlook_of(plan, done, threads_of(options)));
   }
-  const Schedule left(plan, store->done(), store->frames_done());
-  report.timed += left.machines_left();
-  report.traced += left.frames_left();
-  SweepSite site(plan, limit);
+  const std::vector<bool> needed = frames_needed(plan, done);
+  report.timed += static_cast<std::size_t>(std::ranges::count(done.machines, false));
+  report.traced += static_cast<std::size_t>(std::ranges::count(needed, true));
   Progress progress({options.terminal, options.quiet, stderr, threads_of(options)});
-  Coordinator coordinator(
-      plan, *store, progress, [&](std::size_t frame) { site.drop(frame); }, std::move(outlook.costs));
+  SweepResults results(plan, *store, progress);
   const auto clean_up = [&] {
     progress.end();
     if (is_new) {
@@ -95,24 +120,24 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   };
   try {
     const host::AtSignal last_words([&](int signal) {
-      const std::size_t saved = coordinator.close_for_good();
+      const std::size_t saved = results.close_for_good();
       unlock(signal);
       std::fprintf(
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
     });
-    // More workers than tasks would only wait.
-    const std::size_t tasks = std::max<std::size_t>(1, left.machines_left() + left.frames_left());
-    work_together(site, coordinator,
-                  static_cast<unsigned>(std::min<std::size_t>(threads_of(options), tasks)));
+    const TracedFrame last = time_machines(plan, done, limit, threads_of(options), results);
     if (!options.share || report.store.filename() == tables::database_name) {
       advise(
-          plan, *store, limit, [&](std::size_t frame) { return site.log_of(frame); },
-          [&](std::size_t machine, const Advice& advice) { coordinator.advised(machine, advice); });
+          plan, *store, limit,
+          [&](std::size_t frame) {
+            return last.log != nullptr && frame == last.number ? *last.log : trace_frame(plan, frame);
+          },
+          [&](std::size_t machine, const Advice& advice) { results.advised(machine, advice); });
     }
   } catch (const sim::UserError& error) {
     clean_up();
-    throw sim::UserError(error.what() + (" (" + std::to_string(coordinator.saved())) + " of " +
+    throw sim::UserError(error.what() + (" (" + std::to_string(results.saved())) + " of " +
                          std::to_string(plan.machines.size()) + " machines are saved)");
   } catch (...) {
     clean_up();
@@ -171,12 +196,11 @@ SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
       }
     }
   }
-  return outlook_of(
-      plan,
+  const WorkDone work = {
       sim::mapped(plan.machines,
                   [&](const SweepMachine& machine) { return done.machines.contains(machine.key); }),
-      sim::mapped(plan.frames, [&](const SweepFrame& frame) { return done.frames.contains(frame.key); }),
-      threads_of(options));
+      sim::mapped(plan.frames, [&](const SweepFrame& frame) { return done.frames.contains(frame.key); })};
+  return outlook_of(plan, work, threads_of(options));
 }
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,

@@ -205,7 +205,7 @@ TEST_F(SweepCommand, ThePlanAloneWritesNothing) {
   write(config, other);
   const Outcome some = sweep(config, out, "--plan");
   EXPECT_TRUE(says(some, "machines      16, 8 done\n"));
-  EXPECT_TRUE(says(some, "\ntime          about "));
+  EXPECT_TRUE(says(some, "\nmemory        about "));
   EXPECT_EQ(read(store), before);
   EXPECT_EQ(names_in(out).size(), 2U);
 }

@@ -75,23 +75,13 @@ std::string describe(const SweepPlan& plan, const SweepOutlook& outlook) {
   if (cheapest != plan.points.end()) {
     line("price", fmt::format("{:.6g} to {:.6g} a machine", cheapest->cost, dearest->cost));
   }
-  if (outlook.seconds) {
-    line("time", "about " + tables::duration_text(*outlook.seconds));
-  } else if (outlook.not_estimated) {
-    line("time",
-         "not estimated: the scene or its machines are so large that an estimate would take long itself");
-  }
   constexpr double worth_a_word = 1 << 20;
   const auto itself = static_cast<double>(plan_bytes(plan.points.size(), plan.axes.size()));
-  const bool large = itself >= worth_a_word;
-  if (large || outlook.log_bytes || outlook.machine_bytes) {
-    const auto logs = static_cast<double>(outlook.log_bytes.value_or(0));
-    const auto machines_in_flight = static_cast<double>(outlook.machine_bytes.value_or(0));
-    line("memory", fmt::format("about {}: {}work logs {}, machines {}",
-                               tables::bytes(logs + machines_in_flight + (large ? itself : 0.0)),
-                               large ? "the plan " + tables::bytes(itself) + ", " : "",
-                               outlook.not_estimated ? "not estimated" : tables::bytes(logs),
-                               tables::bytes(machines_in_flight)));
+  if (outlook.machine_bytes > 0 || itself >= worth_a_word) {
+    line("memory", fmt::format("about {} for the machines that are timed at once{}",
+                               tables::bytes(static_cast<double>(outlook.machine_bytes)),
+                               itself >= worth_a_word ? ", " + tables::bytes(itself) + " for the plan"
+                                                      : std::string()));
   }
   for (const std::string& note : plan.notes) {
     line("note", note);

@@ -83,21 +83,11 @@ struct SweepPlan {
 /// host_machine.memory_limit, before its points are read.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {});
 
-/// Estimated seconds of processor time for each frame of a plan; empty: not estimated.
-struct FrameCosts {
-  std::vector<double> tracing;  ///< of the frame itself
-  std::vector<double> timing;   ///< of one of its machines
-};
-
-/// What is known before the plan runs, beside the plan itself.
+/// What is known of a plan before it runs: what its store holds already, and what it needs.
 struct SweepOutlook {
-  std::size_t machines_done = 0;  ///< whose results are there already
-  std::size_t frames_done = 0;    ///< whose logs are kept, or that no machine needs any more
-  std::optional<double> seconds;  ///< estimated time of what is left
-  bool not_estimated = false;     ///< because an estimate would take too long itself
-  FrameCosts costs;
-  std::optional<std::uint64_t> log_bytes;      ///< estimated memory of the work logs in use
-  std::optional<std::uint64_t> machine_bytes;  ///< estimated memory of the machines that are timed at once
+  std::size_t machines_done = 0;    ///< whose results are there
+  std::size_t frames_done = 0;      ///< whose logs no machine needs any more
+  std::uint64_t machine_bytes = 0;  ///< memory of the largest machines that may be timed at once
 };
 
 /// Host bytes that a plan takes, about, in which each of `points` points has `axes` values and a machine of

@@ -87,16 +87,17 @@ std::vector<bool> SweepStore::done(const std::string& query, const std::vector<s
   return sim::mapped(ids, [&](const std::int64_t id) { return there.contains(id); });
 }
 
-void SweepStore::add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) {
+bool SweepStore::add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds) {
   const std::int64_t id = ids_.frames.at(frame);
   if (const std::optional<FrameRow> known = reader_->find_frame(id)) {
     sim::ensure(known == row, "the same frame has given two results");
-    return;
+    return false;
   }
   connection_->transact([&] {
     writer_->add(id, row);
     add_cost("host_frames", id, cpu_nanoseconds);
   });
+  return true;
 }
 
 void SweepStore::add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) {

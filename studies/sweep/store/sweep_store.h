@@ -36,7 +36,8 @@ class SweepStore {
   // Each is committed when it returns. A row that is there already must be equal, else InternalError: the
   // same machine has given two results. `cpu_nanoseconds` is what the host took; it differs from run to run,
   // so it goes to tables of its own.
-  void add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
+  // add_frame() returns false for a row that was there.
+  bool add_frame(std::size_t frame, const FrameRow& row, std::int64_t cpu_nanoseconds);
   void add_result(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
 
   /// What would help a machine of the plan, which has none yet. It is committed when this returns. A plan

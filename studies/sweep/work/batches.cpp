@@ -34,4 +34,9 @@ std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std:
   return batches;
 }
 
+bool pays_to_strip(const MachineBatch& batch) {
+  const bool lru = std::ranges::any_of(batch.ways, [](std::uint32_t ways) { return ways != 0; });
+  return !batch.key.empty() && batch.machines.size() >= (lru ? 2U : 4U);
+}
+
 }  // namespace marti::studies::sweep

@@ -25,4 +25,8 @@ struct MachineBatch {
 [[nodiscard]] std::vector<MachineBatch> batches_of(const SweepPlan& plan,
                                                    std::span<const std::size_t> machines);
 
+/// Whether a pass that strips the batch's log takes less time than it saves: for two machines where LRU
+/// caches are among them, for four where only references to the newest line can be taken out.
+[[nodiscard]] bool pays_to_strip(const MachineBatch& batch);
+
 }  // namespace marti::studies::sweep

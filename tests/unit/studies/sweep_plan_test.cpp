@@ -466,8 +466,7 @@ TEST(SweepPlan, IsDescribed) {
       "cache.size = [\"1 KiB\", \"2 KiB\"]\n[sweep]\nfilter = \"machine.nodes <> 6\"\n");
   SweepOutlook outlook;
   outlook.machines_done = 3;
-  outlook.seconds = 75.0;
-  outlook.log_bytes = 1024;
+  outlook.machine_bytes = 1024;
   EXPECT_EQ(describe(plan, outlook),
             "axes          machine.nodes: 2, 4, 6, 8, 10, 12, ..., 20 (10 values)\n"
             "              cache.ways and cache.size: 1 and 1 KiB, 2 and 2 KiB\n"
@@ -475,8 +474,7 @@ TEST(SweepPlan, IsDescribed) {
             "frames        1 functional run, 0 done\n"
             "machines      20 (18 of points, 2 to measure them against), 3 done\n"
             "price         6.0625 to 25.25 a machine\n"
-            "time          about 1 min 15 s\n"
-            "memory        about 1.0 KiB: work logs 1.0 KiB, machines 0 B\n");
+            "memory        about 1.0 KiB for the machines that are timed at once\n");
 }
 
 TEST(SweepPlan, ShippedSweepsAreWhatTheySay) {

@@ -1,23 +1,18 @@
-// What the workers of a sweep share: stripped logs, memory, and how far they say they are.
+// What machines that are timed at once share: memory, and how far they say they are.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <future>
-#include <limits>
-#include <memory>
 #include <random>
 #include <thread>
 #include <vector>
 
 #include "studies/sweep/work/memory_gate.h"
 #include "studies/sweep/work/progress.h"
-#include "studies/sweep/work/stripped_log_cache.h"
 #include "studies/tables/text_units.h"
-#include "tests/support/random_machine.h"
 
 namespace marti::studies {
 
@@ -26,139 +21,12 @@ using namespace tables;
 
 namespace {
 
-using processors::machine::MachineConfig;
-using processors::program::WorkLog;
-using processors::walk::StrippedLog;
-
-constexpr std::uint64_t plenty = std::numeric_limits<std::uint64_t>::max();
-constexpr std::size_t enough = StrippedLogCache::fewest_machines;
-
-std::shared_ptr<const WorkLog> some_log(std::uint64_t seed) {
-  test::Random random(seed);
-  return std::make_shared<const WorkLog>(test::random_log(random, 24, 24));
-}
-
-MachineConfig with_line(std::uint32_t line) {
-  MachineConfig machine;
-  machine.cache.cache.line = line;
-  return machine;
-}
-
-constexpr std::array<std::uint32_t, 1> four_ways = {4};
-
 template <class Work>
 void on_threads(unsigned count, const Work& work) {
   std::vector<std::jthread> threads;
   for (unsigned thread = 0; thread < count; ++thread) {
     threads.emplace_back([&work, thread] { work(thread); });
   }
-}
-
-TEST(StrippedLogCache, OneIsMadeForAllThatAsk) {
-  const std::shared_ptr<const WorkLog> log = some_log(1);
-  StrippedLogCache cache(plenty);
-  std::array<std::shared_ptr<const StrippedLog>, 8> found;
-  on_threads(8, [&](unsigned thread) {
-    MachineConfig machine = with_line(32);
-    machine.nodes = 1 + thread;  // machines of other sizes share it
-    found.at(thread) = cache.get(0, log, machine, 8, four_ways);
-  });
-  ASSERT_NE(found[0], nullptr);
-  EXPECT_TRUE(found[0]->fits(*log));
-  EXPECT_EQ(found[0]->key(), StrippedLog::key_of(with_line(32)));
-  for (const auto& other : found) {
-    EXPECT_EQ(other, found[0]);
-  }
-  EXPECT_NE(cache.get(0, log, with_line(64), 8, four_ways), found[0]);
-  EXPECT_NE(cache.get(1, log, with_line(32), 8, four_ways), found[0]) << "another frame's";
-}
-
-TEST(StrippedLogCache, OnePassServesAllWays) {
-  const std::shared_ptr<const WorkLog> log = some_log(5);
-  StrippedLogCache cache(plenty);
-  constexpr std::array<std::uint32_t, 4> all_ways = {0, 1, 2, 8};
-  const std::uint32_t sets = memory::shape_of(with_line(32).cache.cache).sets;
-  for (const std::uint32_t ways : all_ways) {
-    MachineConfig machine = with_line(32);
-    machine.cache.cache.ways = ways == 0 ? 2 : ways;
-    machine.cache.cache.size = std::uint64_t{sets} * machine.cache.cache.ways * 32;
-    machine.cache.cache.replacement = ways == 0 ? memory::Replacement::fifo : memory::Replacement::lru;
-    const auto found = cache.get(0, log, machine, enough, all_ways);
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->ways(), ways);
-    EXPECT_EQ(found->references(), StrippedLog::make(*log, machine)->references());
-    EXPECT_EQ(cache.get(0, log, machine, enough, all_ways), found) << "made once";
-  }
-}
-
-TEST(StrippedLogCache, NoneWhereItDoesNotPayOrFit) {
-  const std::shared_ptr<const WorkLog> log = some_log(2);
-  StrippedLogCache cache(plenty);
-  EXPECT_EQ(cache.get(0, log, with_line(32), enough - 1, four_ways), nullptr);
-  constexpr std::array<std::uint32_t, 1> no_lru = {0};
-  MachineConfig fifo = with_line(32);
-  fifo.cache.cache.replacement = memory::Replacement::fifo;
-  EXPECT_EQ(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru - 1, no_lru), nullptr);
-  EXPECT_NE(cache.get(3, log, fifo, StrippedLogCache::fewest_without_lru, no_lru), nullptr);
-  MachineConfig without = with_line(32);
-  without.cache.organisation = processors::machine::CacheOrganisation::none;
-  EXPECT_EQ(cache.get(0, log, without, 100, four_ways), nullptr);
-  const auto made = cache.get(0, log, with_line(32), enough, four_ways);
-  ASSERT_NE(made, nullptr);
-  // Room for one of two: the one with more ways is made.
-  constexpr std::array<std::uint32_t, 2> two_and_four = {2, 4};
-  MachineConfig two = with_line(32);
-  two.cache.cache.ways = 2;
-  two.cache.cache.size /= 2;
-  const std::uint64_t larger = StrippedLog::make(*log, two)->bytes_of_words();
-  ASSERT_GT(larger, made->bytes_of_words());
-  const std::uint64_t packets = std::uint64_t{3} * 3 * (sizeof(processors::walk::PacketTotals) + 2 * 8);
-  StrippedLogCache narrow(StrippedLogCache::most_kept * (made->bytes_of_words() + packets));
-  EXPECT_NE(narrow.get(0, log, with_line(32), enough, two_and_four), nullptr);
-  EXPECT_EQ(narrow.get(0, log, two, enough, two_and_four), nullptr);
-  // Room for one and a half: each may take its part of it only.
-  StrippedLogCache small(made->bytes_of_words() * 3 / 2);
-  EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr);
-  EXPECT_EQ(small.get(0, log, with_line(32), enough, four_ways), nullptr) << "the same the second time";
-}
-
-TEST(StrippedLogCache, KeepsThoseUsedLast) {
-  const std::shared_ptr<const WorkLog> log = some_log(3);
-  StrippedLogCache cache(plenty);
-  static_assert(StrippedLogCache::most_kept == 2);
-  std::weak_ptr<const StrippedLog> first = cache.get(0, log, with_line(16), enough, four_ways);
-  const std::weak_ptr<const StrippedLog> second = cache.get(0, log, with_line(32), enough, four_ways);
-  EXPECT_EQ(cache.get(0, log, with_line(16), enough, four_ways), first.lock());
-  std::shared_ptr<const StrippedLog> third = cache.get(0, log, with_line(64), enough, four_ways);
-  EXPECT_FALSE(first.expired()) << "used later than the second";
-  EXPECT_TRUE(second.expired());
-  cache.drop(1);
-  EXPECT_FALSE(first.expired()) << "of another frame";
-  cache.drop(0);
-  EXPECT_TRUE(first.expired());
-  EXPECT_NE(third, nullptr);
-  EXPECT_EQ(third.use_count(), 1) << "the cache has let go, the user has not";
-}
-
-TEST(StrippedLogCache, ThreadsOfManyBatches) {
-  const std::shared_ptr<const WorkLog> log = some_log(4);
-  std::array<std::uint64_t, 4> references{};
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    references.at(i) = StrippedLog::make(*log, with_line(16U << i))->references();
-  }
-  StrippedLogCache cache(plenty);
-  on_threads(6, [&](unsigned thread) {
-    test::Random random(thread);
-    for (int round = 0; round < 20; ++round) {
-      const std::size_t which = random() % references.size();
-      const auto found = cache.get(0, log, with_line(16U << which), enough, four_ways);
-      ASSERT_NE(found, nullptr);
-      EXPECT_EQ(found->references(), references.at(which));
-      if (random() % 8 == 0) {
-        cache.drop(0);
-      }
-    }
-  });
 }
 
 TEST(MemoryGate, StaysWithinItsLimitUnlessOneIsAlone) {
@@ -191,7 +59,7 @@ TEST(MemoryGate, WaitsForRoom) {
   EXPECT_EQ(third.wait_for(std::chrono::milliseconds(30)), std::future_status::timeout) << "60 + 50 > 100";
   first.reset();
   third.get();
-  const MemoryGate::Pass all(gate, plenty);
+  const MemoryGate::Pass all(gate, ~std::uint64_t{0});
 }
 
 TEST(Progress, SaysHowFarItIs) {
