@@ -1,9 +1,11 @@
 // Where a node's time goes: every tick from 0 to the end of the frame belongs to exactly one activity.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string_view>
 
 #include "memory/interconnect.h"
@@ -37,6 +39,32 @@ inline constexpr std::array<std::string_view, activities> activity_names = {
     "traversal",    "intersection",      "shading",       "building",  "cache_access", "switching",
     "messaging",    "interconnect_wait", "transfer",      "bank_wait", "bank_access",  "lock_wait",
     "message_wait", "queue_full_wait",   "dispatch_wait", "idle"};
+
+/// What a node does, or waits for, during an activity.
+enum class ActivityKind : std::uint8_t {
+  computing,  ///< its own work, hits of its cache and messages among it
+  memory,     ///< being served by the way to memory, without queues
+  queueing,   ///< waiting in a queue of the way to memory, or for room in one
+  delay,      ///< waiting for another node or the host
+  idle        ///< nothing is left to do
+};
+inline constexpr std::array<ActivityKind, activities> activity_kinds = {
+    ActivityKind::computing, ActivityKind::computing, ActivityKind::computing, ActivityKind::computing,
+    ActivityKind::computing, ActivityKind::computing, ActivityKind::computing, ActivityKind::queueing,
+    ActivityKind::memory,    ActivityKind::queueing,  ActivityKind::memory,    ActivityKind::delay,
+    ActivityKind::delay,     ActivityKind::queueing,  ActivityKind::delay,     ActivityKind::idle};
+
+/// The sum of what `of_activity(i)` gives for each activity of these kinds, in the order of the activities.
+template <class OfActivity>
+[[nodiscard]] auto sum_of_kinds(std::initializer_list<ActivityKind> kinds, const OfActivity& of_activity) {
+  decltype(of_activity(std::size_t{0})) sum{};
+  for (std::size_t i = 0; i < activities; ++i) {
+    if (std::find(kinds.begin(), kinds.end(), activity_kinds[i]) != kinds.end()) {
+      sum += of_activity(i);
+    }
+  }
+  return sum;
+}
 
 using TimeDivision = std::array<sim::Ticks, activities>;
 

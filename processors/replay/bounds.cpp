@@ -11,18 +11,13 @@ namespace marti::processors::replay {
 
 namespace {
 
-sim::Ticks part(const cost::NodeStatistics& node, std::initializer_list<cost::Activity> parts) {
-  sim::Ticks sum = 0;
-  for (const cost::Activity activity : parts) {
-    sum = sim::add_ticks(sum, node.time[static_cast<std::size_t>(activity)]);
-  }
-  return sum;
+sim::Ticks part(const cost::NodeStatistics& node, std::initializer_list<cost::ActivityKind> kinds) {
+  return cost::sum_of_kinds(kinds, [&](std::size_t i) { return node.time[i]; });
 }
 
+// Without waits and idling.
 sim::Ticks own_work(const cost::NodeStatistics& node) {
-  return part(node, {cost::Activity::traversal, cost::Activity::intersection, cost::Activity::shading,
-                     cost::Activity::building, cost::Activity::cache_access, cost::Activity::switching,
-                     cost::Activity::messaging, cost::Activity::transfer, cost::Activity::bank_access});
+  return part(node, {cost::ActivityKind::computing, cost::ActivityKind::memory});
 }
 
 // The bus is held by a read while the bank works, so banks are not queues of their own.
@@ -69,8 +64,7 @@ Prediction predict_cluster(const machine::MachineConfig& config, const MachineRe
     const cost::NodeStatistics& node = result.nodes[cluster * config.nodes + i];
     network.customers += had_work(node) ? 1 : 0;
     work += static_cast<double>(own_work(node));
-    delays += static_cast<double>(
-        part(node, {cost::Activity::lock_wait, cost::Activity::message_wait, cost::Activity::dispatch_wait}));
+    delays += static_cast<double>(part(node, {cost::ActivityKind::delay}));
   }
   network.customers = std::max<std::uint64_t>(network.customers, 1);
   network.demands = demands_of(config, result.clusters[cluster], reads);

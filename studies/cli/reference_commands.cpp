@@ -19,8 +19,7 @@
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
 #include "studies/schemes/schemes_keys.h"
-#include "studies/show/figure_list.h"
-#include "studies/show/key_list.h"
+#include "studies/show/lists.h"
 #include "studies/stability/stability_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 

@@ -7,8 +7,8 @@
 
 #include "sim/error.h"
 #include "studies/compare/compare_text.h"
-#include "studies/compare/comparison_page.h"
 #include "studies/compare/figures.h"
+#include "studies/compare/page_parts.h"
 #include "studies/compare/result_and_sweep.h"
 #include "studies/compare/two_sweeps.h"
 #include "studies/compare/verdict.h"

@@ -1,9 +1,11 @@
-// What differs between two results.
+// What differs between two results: their frames, their settings, and whether they can be compared at all.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "studies/compare/figures.h"
@@ -33,5 +35,24 @@ struct Differences {
 
 /// The change from a to b for people: "+12.50 %"; "from 0" where a is 0.
 [[nodiscard]] std::string change_of(const Difference& difference);
+
+struct SharedDifferences {
+  std::vector<Difference> alike;   ///< that every list has, with the same values; by name
+  std::vector<Difference> varied;  ///< the others, each as a list has it, if possible one with both values
+};
+
+/// Takes the differences that all lists share out of them.
+[[nodiscard]] SharedDifferences take_alike(std::span<std::vector<Difference>* const> lists);
+
+/// A setting of what is rendered and how ([scene], [frames], [image], [structure]), not of the machine.
+[[nodiscard]] bool is_frame_setting(std::string_view key);
+
+/// Whether both rendered the same rays and pixels: the hashes of the image and of all hits, and the size of
+/// the image, are equal. Another tree gives the same rays and pixels, so its machines can be compared. Of
+/// results that lack a hash, whether the settings of their frames are equal.
+[[nodiscard]] bool same_frame(const ComparedResult& a, const ComparedResult& b);
+
+/// Those of the differences that are settings of the frame.
+[[nodiscard]] std::vector<Difference> frame_settings(const std::vector<Difference>& settings);
 
 }  // namespace marti::studies::compare

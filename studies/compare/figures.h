@@ -1,4 +1,4 @@
-// What of a result is compared: settings and figures by name.
+// The figures of two results beside each other, and where their cycles went.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/table.h"
@@ -58,5 +59,20 @@ void keep_what_sweeps_have(ComparedResult& result);
 [[nodiscard]] std::string unit_of_figure(std::string_view name);
 /// What the catalogue says of it.
 [[nodiscard]] std::string meaning_of_figure(std::string_view name);
+
+/// The time of a machine's nodes in one activity. A mean of a node is the nodes' time by their number.
+struct ActivityTime {
+  std::string activity;
+  std::int64_t a = 0;       ///< of all nodes of A, ps
+  std::int64_t b = 0;       ///< of all nodes of B, ps
+  std::int64_t mean_a = 0;  ///< of a node, rounded to ps
+  std::int64_t mean_b = 0;
+  double change = 0.0;  ///< of the mean, ps, before rounding
+};
+
+/// The largest change first, then by the order of the activities. Activities in which neither spends time
+/// are left out. Empty when a result lacks the times or the number of its nodes, or their sum is not the
+/// frame time (somebody has changed the file).
+[[nodiscard]] std::vector<ActivityTime> activity_times(const ComparedResult& a, const ComparedResult& b);
 
 }  // namespace marti::studies::compare

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "studies/compare/compare_text.h"
-#include "studies/compare/comparison_page.h"
-#include "studies/compare/frames.h"
+#include "studies/compare/differences.h"
 #include "studies/compare/page_parts.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/tables/cell_number.h"

@@ -9,9 +9,8 @@
 
 #include "sim/error.h"
 #include "sim/mapped.h"
-#include "studies/compare/alike.h"
 #include "studies/compare/compare_text.h"
-#include "studies/compare/frames.h"
+#include "studies/compare/differences.h"
 #include "studies/sweep/store/sweep_reader.h"
 
 namespace marti::studies::compare {

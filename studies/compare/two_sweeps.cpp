@@ -9,10 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "studies/compare/alike.h"
 #include "studies/compare/compare_text.h"
-#include "studies/compare/cycles.h"
-#include "studies/compare/frames.h"
+#include "studies/compare/differences.h"
+#include "studies/compare/figures.h"
 #include "studies/keys/setting_value.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/cell_number.h"

@@ -8,7 +8,7 @@
 
 #include "sim/joined.h"
 #include "studies/compare/compare_text.h"
-#include "studies/compare/frames.h"
+#include "studies/compare/differences.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"

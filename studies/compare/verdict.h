@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "studies/compare/cycles.h"
 #include "studies/compare/differences.h"
+#include "studies/compare/figures.h"
 
 namespace marti::studies::compare {
 

@@ -10,7 +10,7 @@
 #include "studies/explore/http_server.h"
 #include "studies/explore/open_page.h"
 #include "studies/explore/session.h"
-#include "studies/progress/shown_meter.h"
+#include "studies/progress/progress_line.h"
 
 namespace marti::studies::explore {
 

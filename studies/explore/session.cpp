@@ -23,7 +23,7 @@
 #include "studies/report/page/report_page.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/report/read/read_report.h"
-#include "studies/show/key_list.h"
+#include "studies/show/lists.h"
 #include "studies/show/result_json.h"
 
 namespace marti::studies::explore {

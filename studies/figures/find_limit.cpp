@@ -64,8 +64,8 @@ Limit find_limit(const processors::machine::MachineConfig& machine,
       {Limit::queues, waits.queues},
       {Limit::messages, waits.messages},
       {Limit::compute,
-       part({Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
-             Activity::cache_access, Activity::switching, Activity::messaging})},
+       processors::cost::sum_of_kinds({processors::cost::ActivityKind::computing},
+                                      [&](std::size_t i) { return static_cast<double>(time[i]); })},
   }};
   const auto* const largest = std::ranges::max_element(candidates, {}, &std::pair<Limit, double>::second);
   const double all = static_cast<double>(result.end) * static_cast<double>(result.nodes.size());

@@ -1,12 +1,86 @@
 #include "studies/frames/frame_sequence.h"
 
+#include <chrono>
 #include <utility>
 
 #include "scenes/open.h"
+#include "sim/error.h"
 #include "studies/host/image_file.h"
 #include "studies/run/open_frame.h"
 
 namespace marti::studies::frames {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+}  // namespace
+
+FrameTree make_frame_tree(const FrameTree* before, const scenes::Scene& scene,
+                          const accel::OctreeOptions& options) {
+  FrameTree tree;
+  tree.triangles = std::make_shared<const accel::TriangleSet>(scene);
+  const Clock::time_point begin = Clock::now();
+  accel::Octree fresh = accel::Octree::build(tree.triangles, options);
+  tree.build_seconds = seconds_since(begin);
+  if (before == nullptr) {
+    tree.octree = std::make_shared<const accel::StructureOf<accel::Octree>>(std::move(fresh));
+    return tree;
+  }
+  const accel::Octree& old = before->octree->concrete();
+  const Clock::time_point updating = Clock::now();
+  tree.update = accel::update_octree(old, *tree.triangles);
+  accel::Octree updated(tree.triangles, options, old.frame(), tree.update->build);
+  tree.update_seconds = seconds_since(updating);
+  sim::ensure(updated.topology() == fresh.topology(),
+              "an updated octree differs from one built from nothing");
+  tree.octree = std::make_shared<const accel::StructureOf<accel::Octree>>(std::move(updated));
+  return tree;
+}
+
+using processors::walk::BranchStart;
+
+std::vector<BranchStart> partial_starts(const accel::OctreeUpdate& update) {
+  const auto& nodes = update.build.topology.nodes;
+  std::vector<BranchStart> starts(nodes.size(), BranchStart::kept);
+  for (std::uint32_t node = 0; node < nodes.size(); ++node) {
+    if (!nodes[node].leaf && update.altered(node)) {
+      starts[node] = BranchStart::eager;
+    }
+  }
+  return starts;
+}
+
+std::vector<BranchStart> carried_starts(const accel::OctreeUpdate& update,
+                                        std::span<const std::uint8_t> built) {
+  const auto& nodes = update.build.topology.nodes;
+  std::vector<BranchStart> starts(nodes.size(), BranchStart::kept);
+  // Whether the node, or one below it, is a kept branch. Children have higher numbers than their parents.
+  std::vector<std::uint8_t> holds(nodes.size());
+  for (std::size_t left = nodes.size(); left-- > 0;) {
+    const auto node = static_cast<std::uint32_t>(left);
+    const accel::TopologyNode& branch = nodes[node];
+    if (branch.leaf) {
+      continue;
+    }
+    if (!update.altered(node)) {
+      const std::uint32_t was = update.was[node];
+      sim::ensure(was < built.size(), "a kept node was one of the old tree");
+      holds[node] = built[was];
+      starts[node] = built[was] != 0 ? BranchStart::kept : BranchStart::lazy;
+      continue;
+    }
+    for (std::uint32_t child = branch.first; child < branch.first + branch.count; ++child) {
+      holds[node] |= holds[child];
+    }
+    starts[node] = holds[node] != 0 ? BranchStart::eager : BranchStart::lazy;
+  }
+  return starts;
+}
 
 FrameSequence::FrameSequence(const keys::FrameConfig& config)
     : FrameSequence(run::with_scene_keys(

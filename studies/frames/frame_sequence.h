@@ -1,14 +1,51 @@
-// The frames of an animated scene, posed one after another.
+// The frames of an animation one after another: how each begins, and the tree that it has.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "accel/octree.h"
+#include "accel/octree_update.h"
+#include "accel/structure.h"
+#include "processors/walk/build_start.h"
 #include "scenes/animated.h"
+#include "scenes/scene.h"
 #include "studies/keys/frame_keys.h"
 
 namespace marti::studies::frames {
+
+struct FrameTree {
+  std::shared_ptr<const accel::TriangleSet> triangles;
+  std::shared_ptr<const accel::StructureOf<accel::Octree>> octree;
+  /// The update from the tree of the frame before; std::nullopt for the first frame.
+  std::optional<accel::OctreeUpdate> update;
+  double build_seconds = 0.0;   ///< host: building it from nothing, on all threads
+  double update_seconds = 0.0;  ///< host: updating it, on one thread; 0 for the first frame
+
+  [[nodiscard]] const accel::Topology& topology() const { return octree->topology(); }
+};
+
+/// The tree of a pose: built from nothing, and updated from `before` if that is not null. Both must be equal,
+/// node by node and entry by entry: else InternalError. The options enclose all frames (OctreeOptions).
+/// Throws UserError as Octree::build and update_octree do.
+[[nodiscard]] FrameTree make_frame_tree(const FrameTree* before, const scenes::Scene& scene,
+                                        const accel::OctreeOptions& options);
+
+/// Rebuilding in part: altered branches are split before the frame, all others are kept.
+[[nodiscard]] std::vector<processors::walk::BranchStart> partial_starts(const accel::OctreeUpdate& update);
+
+/// Rebuilding in part and on demand, after a frame that left the branches `built` of the old tree with their
+/// children (one entry a node of it):
+///   a branch that is not altered is kept if it was built, and still a P node if not;
+///   an altered branch returns to P, unless it was built and a kept one lies below it: then it is split
+///   before the frame, so that what is below can stay.
+/// Throws InternalError when `built` does not fit the old tree.
+[[nodiscard]] std::vector<processors::walk::BranchStart> carried_starts(const accel::OctreeUpdate& update,
+                                                                        std::span<const std::uint8_t> built);
 
 struct PosedFrame {
   std::uint32_t number = 0;  ///< as the animation counts: frames.first for the first of the sequence

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "studies/frames/frame_tree.h"
+#include "studies/frames/frame_sequence.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/tables/table.h"
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "studies/frames/frame_starts.h"
+#include "studies/frames/frame_sequence.h"
 
 namespace marti::studies::frames {
 

@@ -17,7 +17,7 @@ namespace marti::studies::frames {
 /// rebuild_all: the whole tree is built before each frame, and its time counts. partial: only altered
 /// branches are split before the frame, the rest is kept. dynamic: the initial tree is built before each
 /// frame, the rest on demand, from nothing each time. partial_dynamic: what the frame before has built is
-/// kept, altered branches are split on demand (frame_starts.h); its first frame is that of `dynamic`.
+/// kept, altered branches are split on demand (frame_sequence.h); its first frame is that of `dynamic`.
 enum class FrameWay : std::uint8_t { rebuild_all, partial, dynamic, partial_dynamic };
 inline constexpr std::size_t frame_ways = 4;
 inline constexpr std::array<std::string_view, frame_ways> frame_way_names = {"rebuild_all", "partial",

@@ -13,7 +13,6 @@
 #include "sim/units.h"
 #include "studies/frames/frame_sequence.h"
 #include "studies/frames/frame_tables.h"
-#include "studies/frames/frame_tree.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/frames/frames_config.h"
 #include "studies/run/functional_run.h"

@@ -5,10 +5,10 @@
 
 #include "sim/mapped.h"
 #include "studies/figures/counted_figures.h"
-#include "studies/helps/least_time.h"
 #include "studies/helps/resources.h"
 #include "studies/helps/verdict.h"
 #include "studies/helps/what_helps.h"
+#include "studies/helps/work.h"
 
 namespace marti::studies::helps {
 

@@ -9,7 +9,7 @@
 
 #include "studies/helps/change.h"
 #include "studies/helps/replays.h"
-#include "studies/helps/resource.h"
+#include "studies/helps/resources.h"
 #include "studies/keys/price_keys.h"
 
 namespace marti::studies::helps {
@@ -47,7 +47,7 @@ struct MeasuredChange {
   std::optional<double> price{};    ///< by which the machine's price rises; std::nullopt: no prices are given
 };
 
-/// One resource (studies/helps/resource.h).
+/// One resource (studies/helps/resources.h).
 struct Help {
   std::string name;
   Part part = Part::nodes;

@@ -35,8 +35,9 @@ double share(const figures::Counts& counts, std::initializer_list<Activity> acti
 double percent(const figures::Counts& counts, Activity activity) { return 100.0 * share(counts, {activity}); }
 
 double computing(const figures::Counts& counts) {
-  return share(counts, {Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
-                        Activity::cache_access, Activity::switching, Activity::messaging});
+  return processors::cost::sum_of_kinds({processors::cost::ActivityKind::computing}, [&](std::size_t i) {
+    return share(counts, {static_cast<Activity>(i)});
+  });
 }
 
 double start_up(const figures::Counts& counts) {

@@ -1,4 +1,4 @@
-// The work of a run and of replays, in units that do not depend on the computer.
+// The work of a run and of replays, and the least time of a frame on a changed machine, without a replay.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,13 @@
 #include "processors/walk/stripped_log.h"
 
 namespace marti::studies::helps {
+
+/// A lower bound of the frame time of `changed`, which traces the frame that `machine` traced with `result`:
+/// the steps of all rays take the same cycles on both, each step is some node's, and no node does two things
+/// at a time. Time that depends on caches, memory, messages or building is left out.
+[[nodiscard]] sim::Ticks least_time(const processors::machine::MachineConfig& machine,
+                                    const processors::replay::MachineResult& result,
+                                    const processors::machine::MachineConfig& changed);
 
 /// About a nanosecond of one processor. It is counted, not timed, so that the same steps are measured on
 /// every computer.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/paper/building_table.h"
-#include "studies/paper/traced_run.h"
+#include "studies/paper/host_builds.h"
 #include "studies/paper/tree_table.h"
 #include "studies/tables/claim.h"
 

@@ -7,7 +7,7 @@
 
 #include "memory/layout.h"
 #include "processors/cost/accounting.h"
-#include "studies/paper/traced_run.h"
+#include "studies/paper/host_builds.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::paper {

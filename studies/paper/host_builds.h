@@ -1,15 +1,36 @@
-// Tables 2 to 5 on the host: real seconds of the octree that is built while rays are traced.
+// What building the trees takes on this computer, and frames traced with them.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "processors/program/work_log.h"
+#include "processors/replay/replay.h"
 #include "studies/paper/building_table.h"
+#include "studies/paper/level_counts.h"
 #include "studies/paper/paper_keys.h"
-#include "studies/paper/traced_run.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::paper {
+
+struct TracedRun {
+  PaperRun run;
+  processors::program::LogTotals totals;
+  std::shared_ptr<const processors::program::WorkLog> log;
+  std::vector<LevelCount> levels;  ///< of the whole tree
+  NodeVisits visits;
+};
+
+/// Traces one run. Throws UserError as run_functional does.
+[[nodiscard]] TracedRun trace_run(const PaperConfig& config, const PaperRun& run);
+
+/// Times every initial level of every run on the configured machine, its tree shared by the nodes. Machines
+/// are simulated at the same time on all host cores; the results do not depend on how many there are.
+[[nodiscard]] std::vector<RunOutcomes> time_initial_levels(const PaperConfig& config,
+                                                           std::span<const TracedRun> runs);
 
 /// One initial level. Seconds are the least of the configured number of repetitions.
 struct HostOutcome {

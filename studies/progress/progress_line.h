@@ -1,4 +1,4 @@
-// A line on a terminal that is drawn over and over while something long is done, and taken away at the end.
+// How far work has come, said on a terminal: a line that is drawn over and over.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,12 @@
 #include <cstdio>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+
+#include "sim/work_meter.h"
+#include "studies/host/signals_held.h"
 
 namespace marti::studies::progress {
 
@@ -49,5 +53,20 @@ class ProgressLine {
 
 /// The width of bars on terminals.
 inline constexpr std::size_t usual_bar = 24;
+
+/// Shows the meter while it lives, if standard error is a terminal and the work takes more than two seconds.
+/// `meter` must outlive it.
+class ShownMeter {
+ public:
+  explicit ShownMeter(const sim::WorkMeter& meter);
+
+ private:
+  std::optional<ProgressLine> line_;
+  std::optional<host::AtSignal> at_signal_;  // takes the line away
+};
+
+/// "[######......] tracing: 120 of 240 rows, 5.0 s": what is done, and how long the work has taken. Without
+/// steps that are counted there is no bar; empty before anything was begun.
+[[nodiscard]] std::string meter_text(const sim::WorkMeter::State& state, double seconds);
 
 }  // namespace marti::studies::progress

@@ -145,13 +145,6 @@ processors::program::Frame PreparedFrame::trace(const processors::program::Pixel
       [&] { return processors::program::render(*scene_, *triangles_, *structure_, options); });
 }
 
-processors::program::Frame PreparedFrame::trace_small(double side) const {
-  return with_scene_keys([&] {
-    return processors::program::render(*scene_, *triangles_, *structure_,
-                                       keys::made_small(config_.render, side));
-  });
-}
-
 FunctionalRun PreparedFrame::part(processors::program::Frame frame) const {
   FunctionalRun run = run_;
   run.frame = std::move(frame);

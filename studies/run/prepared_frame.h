@@ -31,8 +31,6 @@ class PreparedFrame {
   /// null (processors::RenderOptions).
   [[nodiscard]] processors::program::Frame trace(const processors::program::PixelSet* only = nullptr,
                                                  const processors::program::Frame* before = nullptr) const;
-  /// Traces and records the frame with its longer side made so many pixels, at most.
-  [[nodiscard]] processors::program::Frame trace_small(double side) const;
   /// The run of a frame of which only a part is traced: what was not counted of the whole is missing.
   [[nodiscard]] FunctionalRun part(processors::program::Frame frame) const;
   /// The run of the whole frame.

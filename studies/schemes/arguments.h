@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "studies/paper/claims.h"
-#include "studies/schemes/cell_table.h"
 #include "studies/schemes/scaling_table.h"
-#include "studies/schemes/stage_table.h"
+#include "studies/schemes/tree_tables.h"
 
 namespace marti::studies::schemes {
 

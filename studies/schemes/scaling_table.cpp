@@ -4,8 +4,9 @@
 #include <iterator>
 #include <string>
 
+#include "processors/cost/accounting.h"
 #include "studies/figures/derived_figures.h"
-#include "studies/schemes/tree_point.h"
+#include "studies/schemes/tree_tables.h"
 
 namespace marti::studies::schemes {
 
@@ -27,10 +28,10 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::replay::Mac
   point.interconnect = figure("interconnect_utilisation");
   point.hit_ratio = figure("hit_ratio");
   point.idle = figure("share_idle").value_or(0.0);
-  for (const std::string_view what :
-       {"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait", "dispatch_wait"}) {
-    point.waiting += figure("share_" + std::string(what)).value_or(0.0);
-  }
+  point.waiting = processors::cost::sum_of_kinds(
+      {processors::cost::ActivityKind::queueing, processors::cost::ActivityKind::delay}, [&](std::size_t i) {
+        return figure("share_" + std::string(processors::cost::activity_names[i])).value_or(0.0);
+      });
   point.messages = figures::count_of(counts, "network_messages");
   point.message_bytes = figures::count_of(counts, "network_bytes");
   return point;

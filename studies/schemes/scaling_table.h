@@ -11,7 +11,7 @@
 #include "processors/replay/replay.h"
 #include "studies/figures/find_limit.h"
 #include "studies/schemes/schemes_keys.h"
-#include "studies/schemes/stage_table.h"
+#include "studies/schemes/tree_tables.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::schemes {

@@ -6,11 +6,9 @@
 
 #include "studies/run/functional_run.h"
 #include "studies/schemes/arguments.h"
-#include "studies/schemes/cell_table.h"
 #include "studies/schemes/scaling_table.h"
 #include "studies/schemes/schemes_keys.h"
-#include "studies/schemes/stage_table.h"
-#include "studies/schemes/structure_table.h"
+#include "studies/schemes/tree_tables.h"
 #include "studies/tables/claim.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"

@@ -10,7 +10,7 @@
 #include "studies/run/functional_run.h"
 #include "studies/schemes/arguments.h"
 #include "studies/schemes/schemes_keys.h"
-#include "studies/schemes/structure_table.h"
+#include "studies/schemes/tree_tables.h"
 
 namespace marti::tests {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <string>
 
 #include "processors/cost/accounting.h"
 
@@ -10,22 +11,17 @@ namespace marti::studies::report {
 
 namespace {
 
-using processors::cost::Activity;
+using processors::cost::ActivityKind;
 
-double sum_of(const ReportPoint& point, std::initializer_list<Activity> activities) {
-  double all = 0.0;
-  for (const Activity activity : activities) {
-    all += point.figure("time_" +
-                        std::string(processors::cost::activity_names[static_cast<std::size_t>(activity)]));
-  }
-  return all;
+double time_of(const ReportPoint& point, std::initializer_list<ActivityKind> kinds) {
+  return processors::cost::sum_of_kinds(kinds, [&](std::size_t i) {
+    return point.figure("time_" + std::string(processors::cost::activity_names[i]));
+  });
 }
 
 // Time of all nodes without waits and idling.
 double work_of(const ReportPoint& point) {
-  return sum_of(point, {Activity::traversal, Activity::intersection, Activity::shading, Activity::building,
-                        Activity::cache_access, Activity::switching, Activity::messaging, Activity::transfer,
-                        Activity::bank_access});
+  return time_of(point, {ActivityKind::computing, ActivityKind::memory});
 }
 
 double clusters_of(const ReportPoint& point) { return std::max(1.0, point.figure("clusters")); }
@@ -59,8 +55,7 @@ std::optional<double> saturation_of(const ReportPoint& point) {
   }
   const double queues = (point.links_are_queues ? point.figure("interconnect_busy") : 0.0) +
                         (point.banks_are_queues ? point.figure("bank_busy") : 0.0);
-  const double round =
-      work_of(point) + sum_of(point, {Activity::lock_wait, Activity::message_wait, Activity::dispatch_wait});
+  const double round = work_of(point) + time_of(point, {ActivityKind::delay});
   return std::max(round, queues) / clusters_of(point) / busiest;
 }
 

@@ -283,6 +283,8 @@ tables::Table waits_table(const tables::RunJson& run) {
   return table;
 }
 
+using processors::cost::ActivityKind;
+
 tables::Table nodes_table(const tables::RunJson& run) {
   tables::Table table(
       "run_nodes", "What each node does",
@@ -294,20 +296,14 @@ tables::Table nodes_table(const tables::RunJson& run) {
   const double end = run.count("figures.machine.end");
   std::int64_t number = 0;
   for (const tables::RunJson& node : run.list("machine.per_node")) {
-    const auto share = [&](std::initializer_list<const char*> activities) {
-      double sum = 0.0;
-      for (const char* activity : activities) {
-        sum += node.count(std::string("time_ps.") + activity);
-      }
+    const auto share = [&](std::initializer_list<ActivityKind> kinds) {
+      const double sum = processors::cost::sum_of_kinds(kinds, [&](std::size_t i) {
+        return node.count("time_ps." + std::string(processors::cost::activity_names[i]));
+      });
       return end > 0.0 ? sum / end : 0.0;
     };
-    table.add_row({number++,
-                   share({"traversal", "intersection", "shading", "building", "cache_access", "switching",
-                          "messaging"}),
-                   share({"transfer", "bank_access"}),
-                   share({"interconnect_wait", "bank_wait", "lock_wait", "message_wait", "queue_full_wait",
-                          "dispatch_wait"}),
-                   share({"idle"})});
+    table.add_row({number++, share({ActivityKind::computing}), share({ActivityKind::memory}),
+                   share({ActivityKind::queueing, ActivityKind::delay}), share({ActivityKind::idle})});
   }
   return table;
 }

@@ -83,24 +83,6 @@ std::optional<std::int64_t> SweepReader::compare() const {
   return connection_.value<std::int64_t>("SELECT machine FROM compare");
 }
 
-std::vector<std::string> SweepReader::keys(const std::string& sql) const {
-  std::vector<std::string> found;
-  tables::SqliteStatement statement(connection_, sql);
-  while (statement.next()) {
-    found.push_back(statement.text(0));
-  }
-  std::ranges::sort(found);
-  return found;
-}
-
-std::vector<std::string> SweepReader::machines_done() const {
-  return keys("SELECT m.key FROM machines m JOIN results r ON r.machine = m.id");
-}
-
-std::vector<std::string> SweepReader::frames_done() const {
-  return keys("SELECT f.key FROM frames f JOIN frame_results r ON r.frame = f.id");
-}
-
 std::optional<SweepRow> SweepReader::read_result(std::int64_t machine) const {
   return rows_->find_machine(machine);
 }

@@ -54,10 +54,6 @@ class SweepReader {
   /// The machine that all are compared with.
   [[nodiscard]] std::optional<std::int64_t> compare() const;
 
-  /// Keys of all machines that have been timed, and of all frames that have been traced, sorted.
-  [[nodiscard]] std::vector<std::string> machines_done() const;
-  [[nodiscard]] std::vector<std::string> frames_done() const;
-
   /// std::nullopt when the machine has not been timed yet.
   [[nodiscard]] std::optional<SweepRow> read_result(std::int64_t machine) const;
   /// The row of the frame that a machine is timed on; std::nullopt when it has not been traced yet.
@@ -78,8 +74,6 @@ class SweepReader {
       const std::function<void(const StoredPoint&, std::span<const tables::Cell>)>& visit) const;
 
  private:
-  [[nodiscard]] std::vector<std::string> keys(const std::string& sql) const;
-
   // Reading moves SQLite's cursors.
   mutable tables::SqliteConnection connection_;
   mutable std::optional<RowReader> rows_;  // made once the tables are known to exist

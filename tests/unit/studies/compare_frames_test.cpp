@@ -13,9 +13,9 @@
 
 #include "sim/config.h"
 #include "studies/compare/compare.h"
-#include "studies/compare/comparison_page.h"
-#include "studies/compare/cycles.h"
-#include "studies/compare/frames.h"
+#include "studies/compare/differences.h"
+#include "studies/compare/figures.h"
+#include "studies/compare/page_parts.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "studies/run/run_result.h"
 #include "studies/show/result_json.h"

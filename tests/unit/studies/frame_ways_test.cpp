@@ -15,9 +15,7 @@
 #include "scenes/animated.h"
 #include "scenes/procedural.h"
 #include "studies/frames/frame_sequence.h"
-#include "studies/frames/frame_starts.h"
 #include "studies/frames/frame_tables.h"
-#include "studies/frames/frame_tree.h"
 #include "studies/paper/level_counts.h"
 #include "tests/support/random_machine.h"
 

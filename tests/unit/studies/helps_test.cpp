@@ -8,10 +8,10 @@
 #include <map>
 
 #include "studies/figures/counted_figures.h"
-#include "studies/helps/least_time.h"
 #include "studies/helps/resources.h"
 #include "studies/helps/verdict.h"
 #include "studies/helps/what_helps.h"
+#include "studies/helps/work.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/run_result.h"
 #include "tests/contract/random_cases.h"

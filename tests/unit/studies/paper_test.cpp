@@ -9,13 +9,11 @@
 
 #include "sim/config.h"
 #include "sim/error.h"
-#include "studies/paper/build_times.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/host_builds.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
-#include "studies/paper/traced_run.h"
 #include "studies/tables/csv.h"
 #include "tests/support/wrong_configurations.h"
 

@@ -10,7 +10,6 @@
 
 #include "sim/work_meter.h"
 #include "studies/progress/progress_line.h"
-#include "studies/progress/shown_meter.h"
 #include "tests/support/screen.h"
 
 namespace marti::studies {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/schema.h"
-#include "studies/show/key_list.h"
+#include "studies/show/lists.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "tests/support/user_error.h"
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "sim/files.h"
+#include "studies/sweep/store/store_parts.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/tables/sqlite_connection.h"
@@ -82,7 +83,9 @@ std::string figures_of(const fs::path& file) {
       text += key + "=" + value + ";";
     }
   });
-  for (const std::vector<std::string>& keys : {reader.machines_done(), reader.frames_done()}) {
+  DoneKeys done;
+  done.add(file);
+  for (const std::set<std::string>& keys : {done.machines, done.frames}) {
     for (const std::string& key : keys) {
       text += key + ";";
     }

@@ -19,6 +19,7 @@
 #include "studies/compare/two_sweeps.h"
 #include "studies/report/read/read_report.h"
 #include "studies/sweep/store/points_table.h"
+#include "studies/sweep/store/store_parts.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/tables/csv.h"
@@ -188,7 +189,9 @@ std::vector<std::size_t> instants_of(const std::string& made) {
 std::string shown(const fs::path& file, std::size_t& done) {
   std::string text;
   const std::string message = user_error_of([&] {
-    done = is_begun(file) ? SweepReader(file).machines_done().size() : 0;  // as --plan does
+    DoneKeys keys;
+    keys.add(file);  // as --plan does
+    done = keys.machines.size();
     text = csv_of(points_table(SweepReader(file))) + text_of(two_sweeps(file, file), false);
     text += read_report(file.parent_path()).title;
   });

@@ -1,7 +1,8 @@
-// The configuration keys as `marti config` prints them.
+// The lists of all figures and of all keys.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,9 @@
 #include "sim/schema.h"
 
 namespace marti::studies::show {
+
+[[nodiscard]] std::string list_figures_as_text();
+[[nodiscard]] std::string list_figures_as_markdown();
 
 /// `only`: the name of a key or section; empty: all. Throws UserError when there is none of this name.
 [[nodiscard]] std::string keys_as_text(const sim::Schema& schema, std::string_view only);

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sim/statistics.h"
+#include "studies/show/json_parts.h"
+#include "studies/show/result_parts.h"
+#include "studies/show/text_columns.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies::show {
+
+nlohmann::ordered_json context_json(const run::RunResult& r) {
+  if (r.timed.contexts.nodes.empty()) {
+    return nullptr;
+  }
+  return {{"contexts", r.machine.contexts}, {"per_node", counters_list(r.timed.contexts.nodes)}};
+}
+
+std::string context_lines(const run::RunResult& r) {
+  std::string text;
+  if (r.timed.contexts.nodes.empty()) {
+    return text;
+  }
+  const auto out = std::back_inserter(text);
+  if (r.machine.contexts > 1) {
+    fmt::format_to(out, "contexts      {} a node, {} switches, {} waits for a line that another fetched\n",
+                   r.machine.contexts, tables::grouped(r.count("contexts_switches")),
+                   tables::grouped(r.count("contexts_joined")));
+  }
+  if (r.machine.prefetch.on()) {
+    const std::optional<double> useful = sim::ratio(r.count("contexts_useful"), r.count("contexts_issued"));
+    fmt::format_to(out, "prefetch      {} lines, {} of them useful, {} waits for one under way, {} dropped\n",
+                   tables::grouped(r.count("contexts_issued")), useful ? tables::percent(*useful) : "-",
+                   tables::grouped(r.count("contexts_late")), tables::grouped(r.count("contexts_dropped")));
+  }
+  return text;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using processors::machine::SecondLevel;
+
+}  // namespace
+
+nlohmann::ordered_json second_level_json(const run::RunResult& r) {
+  const SecondLevel sharing = r.machine.l2.sharing;
+  if (sharing == SecondLevel::none) {
+    return nullptr;
+  }
+  Json caches = counters_list(r.timed.l2.caches);
+  for (std::size_t i = 0; i < std::min(caches.size(), r.timed.l2.waits.size()); ++i) {
+    add_counters(caches[i], r.timed.l2.waits[i], "wait_");
+  }
+  return {{"sharing", processors::machine::second_level_names[static_cast<std::size_t>(sharing)]},
+          {"line", processors::machine::second_level_cache(r.machine).line},
+          {"per_cache", caches}};
+}
+
+std::string second_level_line(const run::RunResult& r) {
+  const SecondLevel sharing = r.machine.l2.sharing;
+  if (sharing == SecondLevel::none) {
+    return {};
+  }
+  const std::optional<double> hit_ratio = r.figure("l2_hit_ratio");
+  return fmt::format("second level  {}: {} look-ups, {} misses, {}\n",
+                     sharing == SecondLevel::shared ? "one a cluster" : "one a node",
+                     tables::grouped(r.count("l2_hits") + r.count("l2_misses")),
+                     tables::grouped(r.count("l2_misses")),
+                     hit_ratio ? "hit ratio " + tables::percent(*hit_ratio) : "never asked");
+}
+
+namespace {
+
+using processors::energy::EnergyResult;
+
+double in_joules(std::int64_t femtojoules) { return static_cast<double>(femtojoules) / 1e15; }
+
+double share(std::int64_t part, const EnergyResult& energy) {
+  return energy.total > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(energy.total) : 0.0;
+}
+
+}  // namespace
+
+std::string energy_lines(const run::RunResult& result) {
+  std::string text;
+  if (!result.timed.energy) {
+    return text;
+  }
+  const EnergyResult& energy = *result.timed.energy;
+  constexpr auto counters = EnergyResult::counters();
+  const auto* const end = counters.begin() + processors::energy::energy_parts;
+  const auto* const largest = std::max_element(counters.begin(), end, [&](const auto& a, const auto& b) {
+    return energy.*a.member < energy.*b.member;
+  });
+  const std::optional<double> power = result.figure("power");
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "\nenergy        {} a frame, {} W; its largest part is {} ({:.2f} %)\n",
+                 tables::joules(in_joules(energy.total)), power ? fmt::format("{:.3g}", *power) : "-",
+                 largest->name, share(energy.*largest->member, energy));
+  for (const auto* part = counters.begin(); part != end; ++part) {
+    if (energy.*part->member > 0) {
+      fmt::format_to(out, "  {:<14}{:>12} {:>8.2f} %\n", part->name,
+                     tables::joules(in_joules(energy.*part->member)), share(energy.*part->member, energy));
+    }
+  }
+  fmt::format_to(out, "  {:.4g} rays a joule, {:.4g} uJ s, {:.4g} mm2 of nodes and caches\n",
+                 result.figure("rays_a_joule").value_or(0.0), result.figure("energy_delay").value_or(0.0),
+                 result.figure("area").value_or(0.0));
+  return text;
+}
+
+nlohmann::ordered_json build_json(const run::RunResult& r) {
+  const processors::node::BuildResult& build = r.timed.build;
+  if (build.sharing == processors::machine::Sharing::given) {
+    return nullptr;
+  }
+  return {{"sharing", processors::machine::sharing_names[static_cast<std::size_t>(build.sharing)]},
+          {"levels", counters_list(build.levels)},
+          {"per_node", counters_list(build.nodes)}};
+}
+
+std::string build_lines(const run::RunResult& r) {
+  const processors::node::BuildResult& build = r.timed.build;
+  std::string text;
+  if (build.sharing == processors::machine::Sharing::given) {
+    return text;
+  }
+  fmt::format_to(std::back_inserter(text),
+                 "\nbuilding      {} before the frame, {} of its time; {} during it, {} lock waits",
+                 tables::grouped(r.count("build_start_up_splits")),
+                 tables::percent(sim::ratio(r.count("build_start_up"), r.count("end")).value_or(0.0)),
+                 tables::grouped(r.count("build_splits")), tables::grouped(r.count("build_waits")));
+  if (const std::int64_t wasted = r.count("build_wasted_splits"); wasted != 0) {
+    text += fmt::format(", {} made more than once", tables::grouped(wasted));
+  }
+  const TextColumns table = {8, {10, 10, 10, 12, 12, 12, 14}};
+  text += "\n" + table.row("  level", {"branches", "leaves", "partial", "node bytes", "list bytes",
+                                       "released", "visits"});
+  const auto line = [&](const std::string& name, const processors::node::BuildLevel& level) {
+    std::vector<std::string> cells;
+    for (const std::int64_t count : {level.branches, level.leaves, level.partial, level.node_bytes,
+                                     level.list_bytes, level.released_bytes, level.visits}) {
+      cells.push_back(std::to_string(count));
+    }
+    text += table.row("  " + name, cells);
+  };
+  for (std::size_t level = 0; level < build.levels.size(); ++level) {
+    line(std::to_string(level + 1), build.levels[level]);
+  }
+  line("all", r.counters<processors::node::BuildLevel>("tree_"));
+  return text;
+}
+
+}  // namespace marti::studies::show
