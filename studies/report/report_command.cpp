@@ -53,7 +53,7 @@ std::vector<fs::path> write_all(const fs::path& file, const std::string& page, c
   for (const Plot& plot : plots) {
     pending_plots.write(plot.file, plot.content);
   }
-  std::vector<fs::path> files = pending_plots.commit();
+  std::vector<fs::path> files = directory.empty() ? std::vector<fs::path>() : pending_plots.commit_set();
   (void)pending_page.commit();
   files.push_back(file);
   return files;

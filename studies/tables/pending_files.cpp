@@ -4,6 +4,7 @@
 
 #include "sim/input_files.h"
 #include "sim/sha256.h"
+#include "studies/tables/file_set.h"
 
 namespace marti::studies::tables {
 
@@ -26,6 +27,16 @@ std::map<std::string, std::string> PendingFiles::hashes() const {
     hashes[names_[i].filename().string()] = sim::sha256_of_file(pending_[i].temporary());
   }
   return hashes;
+}
+
+std::vector<std::filesystem::path> PendingFiles::commit_set() {
+  constexpr const char* name = "files.json";
+  const FileSet earlier = read_file_set(directory_ / name);
+  const FileSet now{.files = hashes()};
+  write(name, text_of(now));
+  std::vector<std::filesystem::path> written = commit();
+  remove_others(earlier, now, directory_);
+  return written;
 }
 
 std::vector<std::filesystem::path> PendingFiles::commit() {

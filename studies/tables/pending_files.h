@@ -28,6 +28,9 @@ class PendingFiles {
 
   /// Renames them all and returns their names, in the order in which they were added. Throws UserError.
   std::vector<std::filesystem::path> commit();
+  /// As commit(), with a further file, files.json, that names the others (studies/tables/file_set.h). Files
+  /// that the directory's files.json names, that are as it says and that are not among these, are removed.
+  std::vector<std::filesystem::path> commit_set();
 
  private:
   std::filesystem::path directory_;

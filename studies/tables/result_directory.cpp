@@ -20,11 +20,11 @@ bool is_there(const fs::path& file) {
 }
 
 void refuse_other_results(const fs::path& directory, std::string_view own) {
-  for (const char* const other : {run_name, database_name}) {
+  for (const char* const other : {run_name, database_name, trace_name}) {
     if (!directory.empty() && other != own && is_there(directory / other)) {
       throw sim::UserError(
           (directory / other).string() +
-          ": is there already, and a directory holds a run or a sweep or a study, not two of "
+          ": is there already, and a directory holds a run, a sweep, a study or traces, not two of "
           "them; give another directory");
     }
   }

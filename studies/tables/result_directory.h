@@ -1,5 +1,5 @@
 // The directories in which results are kept: that of a run has a result.json, that of a sweep or a study a
-// results.sqlite.
+// results.sqlite, that of traces a trace.json.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,18 @@ namespace marti::studies::tables {
 inline constexpr const char* run_name = "result.json";
 /// The file of a sweep or study in its directory.
 inline constexpr const char* database_name = "results.sqlite";
+/// The file that names the traces of `marti trace` beside it, and the machine that they are of.
+inline constexpr const char* trace_name = "trace.json";
 
 /// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);
 
-/// UserError when the directory holds the other of the two than `own`: nobody could tell later which of them
+/// UserError when the directory holds another of the three than `own`: nobody could tell later which of them
 /// is meant. An empty name holds nothing.
 void refuse_other_results(const std::filesystem::path& directory, std::string_view own);
 
-/// The one of the two that the directory holds. UserError when it holds both, or neither: `expected` says
-/// what it should be then.
+/// The result.json or results.sqlite of the directory. UserError when it holds both, or neither: `expected`
+/// says what it should be then.
 [[nodiscard]] std::filesystem::path results_in(const std::filesystem::path& directory,
                                                std::string_view expected);
 

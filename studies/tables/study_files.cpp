@@ -41,7 +41,7 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
   }
   all.push_back(columns);
   write_database(files.add(database_name), all);
-  return files.commit();
+  return files.commit_set();
 }
 
 void refuse_store_of_sweep(const fs::path& directory) {

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -146,10 +147,45 @@ TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
     EXPECT_EQ(counts.writes, nodes[node]["writes"]);
     EXPECT_GT(counts.misses, 0);
   }
-  // The files of a machine of fewer nodes replace them all.
-  ASSERT_EQ(marti("trace " + small_run + " --set machine.nodes=2 -o " + quoted(directory.path())).status, 0);
-  EXPECT_TRUE(fs::exists(directory.path() / "node-00001.din"));
-  EXPECT_FALSE(fs::exists(directory.path() / "node-00002.din"));
+}
+
+// The traces beside one another are of one machine, which trace.json names; none of another stays, and none
+// of the user's goes.
+TEST(TraceCommand, ADirectoryHoldsTheTracesOfOneMachine) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const auto trace = [&](const std::string& arguments) {
+    return "trace " + small_run + " " + arguments + " -o " + quoted(out);
+  };
+  using Names = std::set<std::string>;
+  ASSERT_EQ(marti(trace("--nodes 0-1")).status, 0);
+  EXPECT_EQ(names_in(out), (Names{"node-00000.din", "node-00001.din", "trace.json"}));
+  const std::string first = read(out / "node-00000.din");
+  ASSERT_EQ(marti(trace("--nodes 3 --set host_machine.memory_limit=1GiB")).status, 0);
+  EXPECT_EQ(names_in(out), (Names{"node-00000.din", "node-00001.din", "node-00003.din", "trace.json"}));
+  EXPECT_EQ(read(out / "node-00000.din"), first);
+  auto named = nlohmann::json::parse(read(out / "trace.json"));
+  EXPECT_EQ(named["settings"]["machine.scheme"], "\"image\"");
+  EXPECT_EQ(named["files"].size(), 3U);
+  ASSERT_EQ(marti(trace("--nodes 2 --set scene.source=tetra:1")).status, 0);
+  EXPECT_EQ(names_in(out), (Names{"node-00002.din", "trace.json"}));
+
+  // What trace.json does not name, and what it names and was changed, is the user's.
+  const std::string before = read(out / "node-00002.din");
+  write(out / "notes.txt", "mine");
+  for (const char* name : {"node-00009.din", "node-00002.din"}) {
+    write(out / name, "mine");
+    expect_refused(trace("--nodes 0"), "is no file that trace.json there says");
+    EXPECT_EQ(read(out / name), "mine");
+    EXPECT_FALSE(fs::exists(out / "node-00000.din"));
+    fs::remove(out / name);
+  }
+  expect_refused("run " + small_run + " -o " + quoted(out), "trace.json: is there already");
+  ASSERT_EQ(marti(trace("--nodes 1")).status, 0);
+  EXPECT_EQ(names_in(out), (Names{"node-00001.din", "notes.txt", "trace.json"}));
+  const fs::path run = directory.path() / "run";
+  ASSERT_EQ(marti("run " + small_run + " -o " + quoted(run)).status, 0);
+  expect_refused("trace " + small_run + " -o " + quoted(run), "result.json: is there already");
 }
 
 TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -17,6 +18,9 @@
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "sim/parse_number.h"
+#include "sim/pending_file.h"
+#include "sim/sha256.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/host/signals_held.h"
 #include "studies/keys/machine_keys.h"
@@ -25,6 +29,9 @@
 #include "studies/run/record/text_stream.h"
 #include "studies/run/run_result.h"
 #include "studies/run/trace/node_list.h"
+#include "studies/tables/file_set.h"
+#include "studies/tables/result_directory.h"
+#include "studies/version.h"
 
 namespace marti::studies::run {
 
@@ -90,21 +97,41 @@ std::string describe(const std::filesystem::path& file, const Count& count) {
 
 std::string file_name(std::uint32_t node) { return fmt::format("node-{:05}.din", node); }
 
-// Removes the files of an earlier trace of a machine with more nodes.
-void remove_beyond(const std::filesystem::path& directory, std::uint32_t nodes) {
-  std::vector<std::filesystem::path> older;
+// Whether a file has the name of a trace of some node.
+bool is_trace(const std::string& name) {
+  const std::string_view stem = std::string_view(name).substr(0, name.rfind('.'));
+  const auto node = sim::parse_number<std::uint32_t>(stem.substr(std::min(stem.find('-') + 1, stem.size())));
+  return node && name == file_name(*node);
+}
+
+// A trace that no trace.json names may be the user's, or of any machine.
+void refuse_foreign_traces(const std::filesystem::path& directory, const tables::FileSet& earlier) {
   std::error_code error;
   for (std::filesystem::directory_iterator entry(directory, error);
        !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string stem = entry->path().stem().string();
-    const auto node = sim::parse_number<std::uint32_t>(std::string_view(stem).substr(stem.find('-') + 1));
-    if (node && *node >= nodes && entry->path().filename() == file_name(*node)) {
-      older.push_back(entry->path());
+    const std::string name = entry->path().filename().string();
+    if (is_trace(name) && !tables::is_as_written(earlier, directory, name)) {
+      throw sim::UserError(sim::shown(entry->path().string()) + ": is no file that " + tables::trace_name +
+                           " there says `marti trace` has written; give another directory, or move it away");
     }
   }
-  for (const std::filesystem::path& file : older) {
-    std::filesystem::remove(file, error);
+}
+
+// What makes two traces those of one machine on one frame.
+std::string machine_of(const sim::Config& config, const FunctionalRun& functional) {
+  nlohmann::ordered_json settings = nlohmann::ordered_json::object();
+  for (const sim::EffectiveValue& value : config.effective_values()) {
+    if (!value.key.starts_with("host_machine.")) {
+      settings[value.key] = value.value;
+    }
   }
+  const nlohmann::ordered_json json = {{"command", "marti trace"},
+                                       {"version", version},
+                                       {"scene", sim::shown(functional.scene.name)},
+                                       {"image_hash", fmt::format("{:016x}", functional.image_hash)},
+                                       {"hit_hash", fmt::format("{:016x}", functional.frame.hit_hash)},
+                                       {"settings", settings}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -120,6 +147,9 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   refuse_beyond_memory(config, frame, machine);
   refuse_other_machines(config, machine);
   const std::vector<std::uint32_t> nodes = parse_nodes(options.nodes, machine.all_nodes());
+  tables::refuse_other_results(directory, tables::trace_name);
+  const tables::FileSet earlier = tables::read_file_set(directory / tables::trace_name);
+  refuse_foreign_traces(directory, earlier);
   const FunctionalRun functional = run_functional(frame);
   processors::passes::ReferenceTrace trace;
   processors::replay::ReplayOptions watched;
@@ -142,12 +172,24 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
                            "; choose fewer nodes with --nodes, or raise it");
     }
   }
+  tables::FileSet now{machine_of(config, functional), {}};
+  for (const auto& [name, hash] : earlier.files) {
+    if (earlier.of == now.of && tables::is_there(directory / name)) {
+      now.files[name] = hash;
+    }
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    now.files[file_name(nodes[i])] = sim::sha256_of_file(files[i]->temporary());
+  }
   const host::SignalsHeld held;
+  sim::PendingFile named(directory / tables::trace_name);
+  named.write(tables::text_of(now));
   for (const std::unique_ptr<TextStream>& file : files) {
     file->commit();
   }
-  remove_beyond(directory, machine.all_nodes());
-  return text;
+  named.commit();
+  tables::remove_others(earlier, now, directory);
+  return text + "wrote " + (directory / tables::trace_name).string() + "\n";
 }
 
 }  // namespace marti::studies::run

@@ -19,10 +19,12 @@ struct TraceOptions {
 ///     label address kind
 /// in the traditional din format (M. D. Hill, Dinero III; J. Edler, M. D. Hill, Dinero IV): label 0 for a
 /// read, 1 for a write; the address in hexadecimal digits; the kind of record, which such readers skip.
-/// Files of this kind for nodes that the machine does not have, which the trace of a larger one has left, are
-/// removed. Returns what to tell the user. Throws UserError, and leaves no file behind, for a machine whose
-/// nodes have no references of their own (another scheme than `image`, a tree that is built), for nodes that
-/// are not there, and when the files would be longer than allowed or cannot be written.
+/// trace.json beside them says which machine they are of, and names them (studies/tables/file_set.h). Traces
+/// of the same machine that it names already stay, those of another are removed. Returns what to tell the
+/// user. Throws UserError, and changes nothing, for a machine whose nodes have no references of their own
+/// (another scheme than `image`, a tree that is built), for nodes that are not there, for a directory with
+/// another result or with traces that trace.json does not name or that were changed, and when the files would
+/// be longer than allowed or cannot be written.
 [[nodiscard]] std::string write_traces(sim::Config& config, const TraceOptions& options,
                                        const std::filesystem::path& directory);
 

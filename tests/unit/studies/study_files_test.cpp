@@ -34,9 +34,10 @@ StudyOutput make_output(std::int64_t value) {
 TEST(StudyFiles, AreWhatTheHeaderSays) {
   const TemporaryDirectory directory;
   StudyOutput output = make_output(7);
-  EXPECT_EQ(studies::tables::write_study(output, directory.path()).size(), 4U);
-  EXPECT_EQ(names_in(directory.path()),
-            (std::set<std::string>{"numbers.csv", "columns.csv", "report.txt", "results.sqlite"}));
+  EXPECT_EQ(studies::tables::write_study(output, directory.path()).size(), 5U);
+  const std::set<std::string> plain = {"numbers.csv", "columns.csv", "report.txt", "results.sqlite",
+                                       "files.json"};
+  EXPECT_EQ(names_in(directory.path()), plain);
   EXPECT_EQ(read(directory.path() / "numbers.csv"), "n\r\n7\r\n");
   output.host_report = "seconds\n";
   output.host_tables.emplace_back(
@@ -44,7 +45,13 @@ TEST(StudyFiles, AreWhatTheHeaderSays) {
   studies::tables::write_study(output, directory.path());
   EXPECT_EQ(names_in(directory.path()),
             (std::set<std::string>{"numbers.csv", "host_numbers.csv", "columns.csv", "report.txt", "host.txt",
-                                   "results.sqlite"}));
+                                   "results.sqlite", "files.json"}));
+  // Nothing of an earlier study stays beside a later one, but what is the user's does.
+  test::write(directory.path() / "host.txt", "mine");
+  studies::tables::write_study(make_output(8), directory.path());
+  std::set<std::string> and_mine = plain;
+  and_mine.insert("host.txt");
+  EXPECT_EQ(names_in(directory.path()), and_mine);
 }
 
 TEST(StudyFiles, AFailureLeavesTheOldOnes) {
