@@ -43,8 +43,15 @@ class ArgumentReader {
     }
     std::string_view rest = std::string_view(argument_).substr(equals + 1);
     for (bool more = true; more;) {
+      const bool quoted = sim::trim(rest).starts_with('"');
+      const std::string part =
+          quoted ? take_quoted(rest) : std::string(sim::trim(rest.substr(0, rest.find(','))));
+      if (quoted) {
+        add(value_of(part));
+      } else {
+        add_part(part);
+      }
       const std::size_t comma = rest.find(',');
-      add_part(sim::trim(rest.substr(0, comma)));
       more = comma != std::string_view::npos;
       rest = more ? rest.substr(comma + 1) : rest;
     }
@@ -54,6 +61,26 @@ class ArgumentReader {
  private:
   [[noreturn]] void fail(const std::string& message) const { throw sim::UserError(place_ + ": " + message); }
   [[nodiscard]] const sim::Key& declared() const { return config_.schema().keys()[axis_.key]; }
+
+  // A value in quotation marks, in which two stand for one, as in CSV: it may hold commas. Leaves what
+  // follows it.
+  std::string take_quoted(std::string_view& rest) const {
+    std::string value;
+    for (std::size_t at = rest.find('"') + 1; at < rest.size(); ++at) {
+      if (rest[at] != '"') {
+        value += rest[at];
+      } else if (at + 1 < rest.size() && rest[at + 1] == '"') {
+        value += rest[++at];
+      } else {
+        rest = sim::trim(rest.substr(at + 1));
+        if (!rest.empty() && rest.front() != ',') {
+          fail("after a value in quotation marks comes a comma, not " + sim::shown(rest));
+        }
+        return value;
+      }
+    }
+    fail("a quotation mark is not closed");
+  }
 
   // A number or truth as such, so that a key of another type refuses it as it would in a file.
   [[nodiscard]] sim::DocumentValue document_of(std::string_view text) const {

@@ -45,6 +45,12 @@ TEST(AxisArgument, ListsValuesOfEveryType) {
   EXPECT_EQ(values_of("structure.grid_density=0.5,2"), (Values{"0.5", "2.0"}));
 }
 
+TEST(AxisArgument, QuotedValuesMayHoldCommas) {
+  EXPECT_EQ(values_of(R"(scene.source="a,b.glb",c.glb, "d ""e"", f.obj" ,"g")"),
+            (Values{R"("a,b.glb")", R"("c.glb")", R"("d \"e\", f.obj")", R"("g")"}));
+  EXPECT_EQ(values_of(R"(machine.nodes="1",2)"), (Values{"1", "2"}));
+}
+
 TEST(AxisArgument, RangesHoldEveryStepUpToTheirEnd) {
   EXPECT_EQ(values_of("machine.nodes=1..4"), (Values{"1", "2", "3", "4"}));
   EXPECT_EQ(values_of("machine.nodes=1..8+3"), (Values{"1", "4", "7"}));
@@ -71,6 +77,10 @@ TEST(AxisArgument, RefusesWithTheArgumentAndTheReason) {
       {"machine.node=1", "did you mean \"machine.nodes\""},
       {"machine.nodes=", "missing"},
       {"machine.nodes=1,,2", "missing"},
+      {R"(scene.source="a,b)", "not closed"},
+      {R"(scene.source="a"b,c)", "comes a comma, not b"},
+      {R"(scene.source="")", "missing"},
+      {R"(scene.source="a","a")", "twice"},
       {"machine.nodes=1,2,1", "twice"},
       {"machine.nodes=two", "integer"},
       {"machine.nodes=1.5", "integer"},
