@@ -20,6 +20,7 @@
 #include "sim/key_value.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
+#include "sim/toml_place.h"
 #include "sim/toml_text.h"
 #include "sim/trim.h"
 
@@ -37,6 +38,8 @@ struct Origin {
   int line = 0;
   std::string assignment;
 };
+
+constexpr std::size_t whole_line = std::numeric_limits<std::size_t>::max();  // a column behind all of it
 
 [[noreturn]] void fail_at(const Origin& origin, const std::string& message) {
   throw UserError(origin.place + ": " + message);
@@ -153,29 +156,23 @@ void check_free(const DocumentValue& value, const std::string& name, std::string
   }
 }
 
-/// A line of a text that could not be read, with the section that it seems to be in.
+/// A line of a text that could not be read, and the name of the key or table that the reader was at.
 struct FaultyLine {
   std::string_view text;  // without its comment
-  std::string section;    // "cache."
-  std::string_view key;   // of the last line with a '=' up to this one; may be empty
+  std::string name;       // "cache.size"; may be empty
 };
 
-FaultyLine line_of(std::string_view text, std::size_t line) {
-  FaultyLine found;
-  for (std::size_t i = 1; i <= line; ++i) {
-    const std::string_view whole = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), whole.size() + 1));
-    found.text = trim(whole.substr(0, whole.find('#')), " \t\r");
-    const std::size_t equals = found.text.find('=');
-    if (found.text.starts_with('[') && found.text.ends_with(']') && equals == std::string_view::npos) {
-      const std::size_t begin = std::min(found.text.find_first_not_of('['), found.text.size());
-      found.section = std::string(found.text.substr(begin, found.text.find(']') - begin)) + ".";
-      found.key = {};
-    } else if (equals != std::string_view::npos && !found.text.starts_with('[')) {
-      found.key = trim(found.text.substr(0, equals));
-    }
+/// `column` may be beyond the line's end.
+FaultyLine line_of(std::string_view text, std::size_t line, std::size_t column) {
+  const std::size_t begin = byte_of(text, line, 1);
+  const std::string_view from = text.substr(begin);
+  const std::string_view whole = from.substr(0, from.find('\n'));
+  std::size_t end = std::min(byte_of(text, line, column), begin + whole.size());
+  // A fault that is reported where a table's head begins is one of the table.
+  if (end == begin && whole.starts_with('[')) {
+    end += std::min(whole.find(']'), whole.size());
   }
-  return found;
+  return {trim(whole.substr(0, whole.find('#')), " \t\r"), name_at(text, end)};
 }
 
 /// The correction to suggest where a text lacks its quotation marks, the commonest fault; empty for other
@@ -194,8 +191,8 @@ std::string missing_quotes(const FaultyLine& line) {
       std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
   return !letters || value == "true" || value == "false"
              ? ""
-             : "; texts and values with a unit stand in quotation marks: " + shown(line.key) + " = \"" +
-                   shown(value) + "\"";
+             : "; texts and values with a unit stand in quotation marks: " +
+                   shown(trim(line.text.substr(0, equals))) + " = \"" + shown(value) + "\"";
 }
 
 /// Whether the text is an integer of more than 18 characters, which probably exceeds 64 bits.
@@ -229,11 +226,11 @@ class ConfigReader {
 
   void read_text(std::string_view text) {
     if (const std::size_t line = line_too_deep(text); line != 0) {
-      throw UserError(place_of(line_of(text, line), std::to_string(line)) + ": " +
+      throw UserError(place_of(line_of(text, line, whole_line), std::to_string(line)) + ": " +
                       std::string(name_too_deep));
     }
     if (const std::size_t line = line_beyond_ascii(text); line != 0) {
-      throw UserError(place_of(line_of(text, line), std::to_string(line)) +
+      throw UserError(place_of(line_of(text, line, whole_line), std::to_string(line)) +
                       ": a character that is not ASCII, outside of a text in quotes and of a comment");
     }
     try {
@@ -248,16 +245,15 @@ class ConfigReader {
       }
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
-      const FaultyLine line = line_of(text, at.line);
+      const FaultyLine line = line_of(text, at.line, at.column);
       throw UserError(place_of(line, std::to_string(at.line) + ":" + std::to_string(at.column)) + ": " +
                       shown(error.description()) + missing_quotes(line));
     }
   }
 
-  /// "file:place: key"; without the key where the line seems to have none.
+  /// "file:place: name"; without the name where none has begun.
   [[nodiscard]] std::string place_of(const FaultyLine& line, const std::string& place) const {
-    return shown(config_.name_) + ":" + place +
-           (line.key.empty() ? "" : ": " + shown(line.section + std::string(line.key)));
+    return shown(config_.name_) + ":" + place + (line.name.empty() ? "" : ": " + shown(line.name));
   }
 
   /// Lists the values below `table` under their dotted names. An empty table is listed itself.

@@ -173,6 +173,31 @@ TEST(Config, MalformedTomlIsNamedWithLineAndColumn) {
   EXPECT_EQ(error_of("nodes = 3\nnodes 4").rfind("a.toml:2:", 0), 0U);
 }
 
+// Also where the line has no '=', or is only a part of a list or an inline table.
+TEST(Config, MalformedTomlIsNamedWithTheKeyThatIsRead) {
+  const struct {
+    const char* text;
+    const char* place;
+  } wrong[] = {{"[cache]\nways 4\n", "a.toml:2:6: cache.ways: "},
+               {"[cache]\nways: 4\n", "a.toml:2:5: cache.ways: "},
+               {"[cache]\nways = 4\n\nfoo\n", "a.toml:4:4: cache.foo: "},
+               {"[cache]\nways = \n", "a.toml:2:8: cache.ways: "},
+               {"[cache]\nways = 4 5\n", "a.toml:2:10: cache.ways: "},
+               {"[cache\nways = 4\n", "a.toml:1:7: cache: "},
+               {"[ca che]\n", "a.toml:1:5: ca: "},
+               {"[cache]\nways = 1\n[cache]\n", "a.toml:3:1: cache: "},
+               {"[a]\n\"b.c\" = [1,2 # ]\n[cache]\nways = 1\n", "a.toml:3:1: a.\"b.c\": "},
+               {"a = [1,\n 2 3]\n", "a.toml:2:4: a: "},
+               {"a = [1, [2, {b = 3, c = }]]\n", "a.toml:1:25: a.c: "},
+               {"a = { b = 1, c = }\n", "a.toml:1:18: a.c: "},
+               {"[a]\nb = \"\"\"\nc = 1\n", "a.toml:3:7: a.b: "},
+               {"[a]\nb = '''\n[c] d = '''\ne f\n", "a.toml:4:3: a.e: "},
+               {"a = \"\u00e4\u00f6\" b\n", "a.toml:1:10: a: "}};
+  for (const auto& [text, place] : wrong) {
+    EXPECT_EQ(error_of(text).rfind(place, 0), 0U) << text << error_of(text);
+  }
+}
+
 // toml++ asserts that a name begins where a name must.
 TEST(Config, WhatBeginsNoNameIsNamed) {
   const struct {
