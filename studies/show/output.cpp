@@ -1,7 +1,10 @@
 #include "studies/show/output.h"
 
+#include <fcntl.h>
+
 #include <map>
 
+#include "sim/descriptor.h"
 #include "sim/pending_file.h"
 #include "sim/sha256.h"
 #include "studies/host/image_file.h"
@@ -53,7 +56,12 @@ sim::MadeDirectory prepare_output(const std::filesystem::path& directory) {
     return {};
   }
   sim::MadeDirectory made(directory);
-  const sim::PendingFile probe(directory / "probe");
+  // A file without a name, because whatever ends the program here, none must stay.
+  const sim::Descriptor nameless(::open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+  if (nameless.get() < 0) {
+    // The file system has none, or no file can be written, which this says.
+    const sim::PendingFile probe(directory / "probe");
+  }
   return made;
 }
 
