@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/error.h"
@@ -14,22 +15,26 @@ namespace {
 constexpr std::uint64_t bytes_a_texel = sizeof(decltype(Texture::texels)::value_type);
 constexpr const char* textures_take = "its textures take";
 
+[[noreturn]] void fail_image(const SourceFile& file, const ImageFile& image, const std::string& what) {
+  throw ImageError(sim::shown(file.path().string()) + ": image '" + sim::shown(image.name) + "'" + what);
+}
+
 void require_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
   if (image.bytes.empty()) {
-    file.fail("image '" + sim::shown(image.name) + "' is missing, empty or cannot be read");
+    fail_image(file, image, " is missing, empty or cannot be read");
   }
   if (!decode) {
     file.fail("it needs the texture '" + sim::shown(image.name) + "', and no image decoder is at hand");
   }
 }
 
-/// Throws UserError when `decode`, a decoder or a sizer, fails.
+/// Throws ImageError when `decode`, a decoder or a sizer, fails.
 template <class Decode>
 auto read_image(const SourceFile& file, const ImageFile& image, const Decode& decode) {
   try {
     return decode(image.bytes, image.name);
   } catch (const sim::UserError& error) {
-    file.fail("image '" + sim::shown(image.name) + "': " + error.what());
+    fail_image(file, image, std::string(": ") + error.what());
   }
 }
 
@@ -49,13 +54,23 @@ Texture size_image(const SourceFile& file, const ImageFile& image) {
 
 Texture decode_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
   require_image(file, image, decode);
-  if (const ImageSizer& sizer =
-          file.options().size_first ? file.options().size_first : file.options().size_only) {
+  const ImageSizer& sizer = file.options().size_first ? file.options().size_first : file.options().size_only;
+  if (sizer) {
     const ImageSize size = read_image(file, image, sizer);
     // Both the samples from the decoder and the texels made of them.
     file.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
   }
-  Texture texture = read_image(file, image, decode);
+  Texture texture;
+  try {
+    texture = read_image(file, image, decode);
+  } catch (const ImageError& error) {
+    if (!sizer) {
+      throw;
+    }
+    // With its size known it has a place among the textures, also where nobody decodes it: it cannot be
+    // replaced by none only where somebody does.
+    throw sim::UserError(error.what());
+  }
   sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
               "an image decoder returned a texture whose size does not match its texels");
   texture.name = image.name;

@@ -7,6 +7,7 @@
 
 #include "scenes/source_file.h"
 #include "scenes/texture.h"
+#include "sim/error.h"
 
 namespace marti::scenes {
 
@@ -15,8 +16,15 @@ struct ImageFile {
   std::span<const std::byte> bytes;
 };
 
+/// An image that is missing or empty, or has no size that can be read, or, where no sizer is at hand, cannot
+/// be decoded.
+class ImageError : public sim::UserError {
+ public:
+  using UserError::UserError;
+};
+
 /// The image decoded, which needs `decode`, or with its size and its bytes alone, as the file's options say;
-/// takes its memory. Throws UserError.
+/// takes its memory. Throws ImageError, and UserError when there is no decoder or not enough memory.
 [[nodiscard]] Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode);
 
 /// The image decoded, to check it: takes no memory.

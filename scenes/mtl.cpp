@@ -28,18 +28,22 @@ struct MapOption {
   std::size_t least;
   std::size_t most;
 };
-constexpr std::array<MapOption, 12> map_options = {{{"-blendu", 1, 1},
+constexpr std::array<MapOption, 14> map_options = {{{"-blendu", 1, 1},
                                                     {"-blendv", 1, 1},
                                                     {"-boost", 1, 1},
                                                     {"-bm", 1, 1},
                                                     {"-cc", 1, 1},
                                                     {"-clamp", 1, 1},
+                                                    {"-colorspace", 1, 1},
                                                     {"-imfchan", 1, 1},
                                                     {"-mm", 2, 2},
                                                     {"-o", 1, 3},
                                                     {"-s", 1, 3},
                                                     {"-t", 1, 3},
-                                                    {"-texres", 1, 1}}};
+                                                    {"-texres", 1, 1},
+                                                    {"-type", 1, 1}}};
+/// Of these, those that the format has for other statements, or not at all.
+constexpr std::array<std::string_view, 2> foreign_options = {"-colorspace", "-type"};
 
 bool is_number(std::string_view word) { return sim::parse_number<double>(word).has_value(); }
 
@@ -101,7 +105,8 @@ class MtlReader {
   void begin() {
     const std::string_view name = lines_.from(1);
     if (name.empty()) {
-      lines_.fail("newmtl needs a name");
+      left_out_.replace("materials without a name, by ones whose name is empty",
+                        lines_.refusal("newmtl needs a name"));
     }
     MtlMaterial& material = materials_.emplace_back();
     material.name = name;
@@ -161,6 +166,12 @@ class MtlReader {
       if (option == map_options.end()) {
         lines_.fail("map_Kd has no option " + in_quotes(words[at]));
       }
+      if (std::find(foreign_options.begin(), foreign_options.end(), option->name) != foreign_options.end()) {
+        left_out_.replace("options " + std::string(option->name) + " of textures, by none",
+                          lines_.refusal("map_Kd has no option " + in_quotes(words[at])));
+        at = std::min(at + 2, words.size());
+        continue;
+      }
       std::size_t end = at + 1 + option->least;
       // The last word is the file's name, even if it looks like a number.
       while (end < at + 1 + option->most && end + 1 < words.size() && is_number(words[end])) {
@@ -176,7 +187,8 @@ class MtlReader {
     material.texture = lines_.from(at);
     material.texture_place = lines_.place();
     if (material.texture.empty()) {
-      lines_.fail("map_Kd needs the name of a file");
+      left_out_.replace("textures without a file's name, by none",
+                        lines_.refusal("map_Kd needs the name of a file"));
     }
     std::replace(material.texture.begin(), material.texture.end(), '\\', '/');
   }

@@ -35,7 +35,7 @@ struct MtlMaterial {
 
 /// Reads a library; `name` is the file's in messages. Throws UserError, "FILE:LINE: reason", for statements
 /// that the format does not have and values out of range. Counts in `left_out` the statements that marti has
-/// no use for.
+/// no use for, and what is replaced: materials and textures without a name, options that other programs have.
 [[nodiscard]] std::vector<MtlMaterial> read_mtl(std::string_view text, const std::string& name,
                                                 LeftOut& left_out);
 

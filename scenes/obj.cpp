@@ -17,6 +17,7 @@
 #include "scenes/source_file.h"
 #include "scenes/text_lines.h"
 #include "scenes/vertex_values.h"
+#include "sim/error.h"
 #include "sim/shown.h"
 
 namespace marti::scenes {
@@ -24,6 +25,7 @@ namespace marti::scenes {
 namespace {
 
 constexpr std::uint32_t not_given = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t out_of_range = not_given - 1;  // no list is as long
 
 /// A corner of a face; it becomes a vertex of the scene together with all equal ones.
 struct Corner {
@@ -37,11 +39,13 @@ class ObjReader {
  public:
   ObjReader(const SourceFile& file, const ImageDecoder& decode)
       : file_(file),
-        text_(file.read(1)),
+        text_(text_of(file)),
         lines_(text_, sim::shown(file.path().string()), TextLines::Style::wavefront),
         mesh_(file, scene_),
         materials_(file, decode, scene_, left_out_),
-        memory_(file, "its geometry takes") {}
+        memory_(file, "its geometry takes") {
+    left_out_.strict = file.options().strict;
+  }
 
   AnimatedScene read() {
     while (lines_.next()) {
@@ -58,6 +62,15 @@ class ObjReader {
   }
 
  private:
+  /// The file's text; one in UTF-16 is converted, which takes up to 1.5 times as much.
+  static std::string text_of(const SourceFile& file) {
+    std::string text = file.read(1);
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+      file.take_memory(2 * text.size(), "it takes");
+    }
+    return in_utf8(std::move(text));
+  }
+
   void statement() {
     const std::string_view word = lines_.words().front();
     if (word == "v") {
@@ -139,6 +152,8 @@ class ObjReader {
     face_.clear();
     numbers_.clear();
     Corner given;
+    bool usable_normals = true;
+    bool usable_coordinates = true;
     for (std::size_t i = 0; i < count; ++i) {
       Corner corner = corner_of(lines_.words()[i + 1]);
       if (i > 0 && ((corner.coordinates == not_given) != (given.coordinates == not_given) ||
@@ -147,12 +162,20 @@ class ObjReader {
                     in_quotes(lines_.words()[i + 1]));
       }
       given = corner;
+      usable_normals = usable_normals && corner.normal != out_of_range;
+      usable_coordinates = usable_coordinates && corner.coordinates != out_of_range;
       // Without a texture, corners that differ in their coordinates only are one vertex.
       corner.coordinates = textured ? corner.coordinates : not_given;
       corners_.push_back(corner);
       face_.push_back(positions_[corner.position]);
       numbers_.push_back(static_cast<std::uint32_t>(first + i));
     }
+    for (std::size_t i = first; i < corners_.size(); ++i) {
+      corners_[i].normal = usable_normals ? corners_[i].normal : not_given;
+      corners_[i].coordinates = usable_coordinates ? corners_[i].coordinates : not_given;
+    }
+    given.normal = usable_normals ? given.normal : not_given;
+    given.coordinates = usable_coordinates ? given.coordinates : not_given;
     if (!mesh_.add(numbers_, face_, material)) {
       corners_.resize(first);
       return;
@@ -165,7 +188,7 @@ class ObjReader {
   }
 
   /// "7", "7/3", "7//2" or "7/3/2".
-  [[nodiscard]] Corner corner_of(std::string_view word) const {
+  [[nodiscard]] Corner corner_of(std::string_view word) {
     std::array<std::string_view, 3> parts;
     const auto slashes = static_cast<std::size_t>(std::count(word.begin(), word.end(), '/'));
     std::string_view rest = word;
@@ -177,23 +200,36 @@ class ObjReader {
       lines_.fail(in_quotes(word) + " is no corner of a face; one is v, v/vt, v//vn or v/vt/vn");
     }
     Corner corner;
-    corner.position = index(parts[0], positions_.size(), "position");
+    std::string refusal;
+    corner.position = index(parts[0], positions_.size(), "position", refusal);
+    if (corner.position == out_of_range) {
+      throw sim::UserError(refusal);
+    }
     if (!parts[1].empty()) {
-      corner.coordinates = index(parts[1], coordinates_.size(), "texture coordinate");
+      corner.coordinates = index(parts[1], coordinates_.size(), "texture coordinate", refusal);
+      if (corner.coordinates == out_of_range) {
+        left_out_.replace("texture coordinates of corners that are not given, by none of the face", refusal);
+      }
     }
     if (slashes == 2) {
-      corner.normal = index(parts[2], normals_.size(), "normal");
+      corner.normal = index(parts[2], normals_.size(), "normal", refusal);
+      if (corner.normal == out_of_range) {
+        left_out_.replace("normals of corners that are not given, by the face's own", refusal);
+      }
     }
     return corner;
   }
 
-  /// The place in a list of a number from 1, or counted back from -1, the last so far.
-  [[nodiscard]] std::uint32_t index(std::string_view text, std::size_t size, const char* kind) const {
+  /// The place in a list of a number from 1, or counted back from -1, the last so far. `out_of_range`, and
+  /// the reason in `refusal`, if there is no such place.
+  [[nodiscard]] std::uint32_t index(std::string_view text, std::size_t size, const char* kind,
+                                    std::string& refusal) const {
     const std::int64_t given = lines_.integer(text);
     const std::int64_t place = given < 0 ? given + static_cast<std::int64_t>(size) : given - 1;
     if (place < 0 || place >= static_cast<std::int64_t>(size)) {
-      lines_.fail("a corner refers to " + std::string(kind) + " " + std::to_string(given) + ", but " +
-                  std::to_string(size) + " are given before it");
+      refusal = lines_.refusal("a corner refers to " + std::string(kind) + " " + std::to_string(given) +
+                               ", but " + std::to_string(size) + " are given before it");
+      return out_of_range;
     }
     return static_cast<std::uint32_t>(place);
   }

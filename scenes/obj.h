@@ -3,13 +3,16 @@
 //
 // The reader is our own, not tinyobjloader (version 2.0.0rc10 in Debian 12): that one turns a word that is no
 // number into 0, passes over statements that it does not know, gives faces of an unknown material none, and
-// its messages are warnings, most without a line. Here each of these is refused with file and line.
+// its messages are warnings, most without a line. Here each of these is refused with file and line, or, if
+// the scene can be made without it, replaced and counted: libraries and textures that cannot be read, unknown
+// materials and the like (docs/scenes.md, FileOptions::strict).
 //
 // Read: v, vn, vt; f with any number of corners (scenes/polygon_mesh.h), also counted back from the last
 // vertex; mtllib, usemtl. o, g and s change nothing: without normals a face is flat, whatever its smoothing
 // group. Left out with a note: colours and weights of vertices, points, lines, free-form curves and surfaces,
-// settings of the display. All else is refused. Lengths and directions are taken as they are, colours as
-// linear ones, textures as sRGB; v of a texture coordinate goes up, and is turned.
+// settings of the display. All else is refused. The text is UTF-8, or UTF-16 with its byte order mark.
+// Lengths and directions are taken as they are, colours as linear ones, textures as sRGB; v of a texture
+// coordinate goes up, and is turned.
 //
 // Materials. Kd is the colour, with weight d (or 1 - Tr); the largest channel of Ks is the weight of the
 // highlight (illum 2 and above) and of reflection (illum 3 to 9), Ks divided by it their colour; the exponent

@@ -31,7 +31,8 @@ ObjMaterials::ObjMaterials(const SourceFile& file, const ImageDecoder& decode, S
       left_out_(left_out),
       access_(file.path().parent_path(), file.options().max_file_bytes, file.memory(), "file name") {}
 
-std::string ObjMaterials::bytes_of(const std::string& path, const std::string& place) {
+std::optional<std::string> ObjMaterials::bytes_of(const std::string& path, const std::string& place,
+                                                  std::string& reason) {
   const std::string name = access_.directory() + path;
   std::string bytes;
   std::string error = "there is no such file";
@@ -39,19 +40,23 @@ std::string ObjMaterials::bytes_of(const std::string& path, const std::string& p
   if (exists) {
     error.clear();
   }
-  if (!exists || !access_.read(name, bytes, error)) {
-    throw sim::UserError(
-        place + ": " +
-        (access_.refusal().empty() ? in_quotes(path) + " cannot be read: " + error : access_.refusal()));
+  if (exists && access_.read(name, bytes, error)) {
+    return bytes;
   }
-  return bytes;
+  if (!access_.refusal().empty()) {
+    throw sim::UserError(place + ": " + access_.refusal());
+  }
+  reason = place + ": " + in_quotes(path) + " cannot be read: " + error;
+  return std::nullopt;
 }
 
 void ObjMaterials::add_libraries(const TextLines& statement) {
   std::string whole(statement.from(1));
   std::replace(whole.begin(), whole.end(), '\\', '/');
   if (whole.empty()) {
-    statement.fail("mtllib needs the name of a file");
+    left_out_.replace("statements mtllib without a file's name, by no library",
+                      statement.refusal("mtllib needs the name of a file"));
+    return;
   }
   // One name with blanks, or several names: a text longer than any file's name can only be the latter.
   constexpr std::size_t longest_name = 255;
@@ -71,7 +76,14 @@ void ObjMaterials::add_library(const std::string& name, const TextLines& stateme
   if (!libraries_.insert(std::filesystem::path(name).lexically_normal().string()).second) {
     return;
   }
-  const std::string text = bytes_of(name, statement.place());
+  std::string reason;
+  std::optional<std::string> bytes = bytes_of(name, statement.place(), reason);
+  if (!bytes) {
+    left_out_.replace("material libraries that cannot be read, by none", reason);
+    return;
+  }
+  file_.require_memory(2 * bytes->size(), "its materials take");
+  const std::string text = in_utf8(*std::move(bytes));
   std::uint64_t most = 0;  // of its materials
   for (std::size_t at = text.find("newmtl"); at != std::string::npos; at = text.find("newmtl", at + 1)) {
     ++most;
@@ -81,9 +93,11 @@ void ObjMaterials::add_library(const std::string& name, const TextLines& stateme
   for (MtlMaterial& material : read_mtl(text, sim::shown(access_.directory() + name), left_out_)) {
     const auto [known, is_new] = by_name_.try_emplace(material.name, known_.size());
     if (!is_new) {
-      throw sim::UserError(material.place + ": the material " + in_quotes(material.name) +
-                           " is defined a second time; the first is at " +
-                           known_[known->second].source.place);
+      left_out_.replace("further definitions of a material's name, by the first",
+                        material.place + ": the material " + in_quotes(material.name) +
+                            " is defined a second time; the first is at " +
+                            known_[known->second].source.place);
+      continue;
     }
     known_.push_back({std::move(material), folder_of(name), std::nullopt});
   }
@@ -91,11 +105,12 @@ void ObjMaterials::add_library(const std::string& name, const TextLines& stateme
 
 void ObjMaterials::choose(const TextLines& statement) {
   const auto found = by_name_.find(statement.from(1));
-  if (found == by_name_.end()) {
-    statement.fail("there is no material " + in_quotes(statement.from(1)) +
-                   " in the libraries (mtllib) named before it");
+  chosen_ = found == by_name_.end() ? std::nullopt : std::optional(found->second);
+  if (!chosen_) {
+    left_out_.replace("statements usemtl of a material that no library has, by matt grey",
+                      statement.refusal("there is no material " + in_quotes(statement.from(1)) +
+                                        " in the libraries (mtllib) named before it"));
   }
-  chosen_ = found->second;
 }
 
 std::uint32_t ObjMaterials::current() {
@@ -144,25 +159,46 @@ Material ObjMaterials::convert(const Known& known) {
 
 std::uint32_t ObjMaterials::texture_of(const Known& known) {
   const std::string path = known.folder + known.source.texture;
-  const auto [place, is_new] =
-      textures_.try_emplace({path, known.source.clamp}, static_cast<std::uint32_t>(scene_.textures.size()));
-  if (is_new) {
-    const std::string bytes = bytes_of(path, known.source.texture_place);
-    const ImageFile image{known.source.texture, std::as_bytes(std::span(bytes))};
+  const auto [place, is_new] = textures_.try_emplace({path, known.source.clamp}, no_texture);
+  if (!is_new) {
+    return place->second;
+  }
+  std::string reason;
+  const std::optional<std::string> bytes = bytes_of(path, known.source.texture_place, reason);
+  if (!bytes) {
+    left_out_.replace("textures that cannot be read, by none", reason);
+    return no_texture;
+  }
+  try {
+    const ImageFile image{known.source.texture, std::as_bytes(std::span(*bytes))};
     Texture texture = open_image(file_, image, decode_);
     texture.repeat_u = !known.source.clamp;
     texture.repeat_v = !known.source.clamp;
+    place->second = static_cast<std::uint32_t>(scene_.textures.size());
     scene_.textures.push_back(std::move(texture));
+  } catch (const ImageError& error) {
+    left_out_.replace("textures that cannot be decoded, by none", error.what());
   }
   return place->second;
 }
 
 void ObjMaterials::check_unused() {
   for (const Known& known : known_) {
-    if (!known.in_scene && !known.source.texture.empty()) {
-      const std::string bytes = bytes_of(known.folder + known.source.texture, known.source.texture_place);
+    if (known.in_scene || known.source.texture.empty()) {
+      continue;
+    }
+    std::string reason;
+    const std::optional<std::string> bytes =
+        bytes_of(known.folder + known.source.texture, known.source.texture_place, reason);
+    if (!bytes) {
+      left_out_.replace("textures that cannot be read, by none", reason);
+      continue;
+    }
+    try {
       static_cast<void>(
-          decode_image(file_, {known.source.texture, std::as_bytes(std::span(bytes))}, decode_));
+          decode_image(file_, {known.source.texture, std::as_bytes(std::span(*bytes))}, decode_));
+    } catch (const ImageError& error) {
+      left_out_.replace("textures that cannot be decoded, by none", error.what());
     }
   }
 }

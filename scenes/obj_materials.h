@@ -28,7 +28,8 @@ class ObjMaterials {
 
   /// Reads the libraries of a statement mtllib: one file whose name has blanks, or several.
   void add_libraries(const TextLines& statement);
-  /// Takes the material of a statement usemtl for the faces that follow.
+  /// Takes the material of a statement usemtl for the faces that follow; the default one if no library has
+  /// it.
   void choose(const TextLines& statement);
   /// The scene's material for a face.
   [[nodiscard]] std::uint32_t current();
@@ -46,8 +47,9 @@ class ObjMaterials {
     std::optional<std::uint32_t> in_scene;
   };
   void add_library(const std::string& name, const TextLines& statement);
-  /// Throws UserError: the bytes of a file in the scene's folder.
-  std::string bytes_of(const std::string& path, const std::string& place);
+  /// The bytes of a file in the scene's folder; std::nullopt, and `reason` says why, if it cannot be read.
+  /// Throws UserError for one elsewhere and one that is too large.
+  std::optional<std::string> bytes_of(const std::string& path, const std::string& place, std::string& reason);
   [[nodiscard]] Material convert(const Known& known);
   [[nodiscard]] std::uint32_t texture_of(const Known& known);
 

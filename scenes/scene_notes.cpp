@@ -1,14 +1,25 @@
 #include "scenes/scene_notes.h"
 
 #include "scenes/open.h"
+#include "sim/error.h"
 
 namespace marti::scenes {
+
+void LeftOut::replace(const std::string& what, const std::string& refusal) {
+  if (strict) {
+    throw sim::UserError(refusal);
+  }
+  ++replaced[what];
+}
 
 void note_left_out(const LeftOut& left_out, Scene& scene) {
   for (const auto& [what, count] : left_out.features) {
     if (count > 0) {
       scene.notes.push_back("Left out: " + std::to_string(count) + " " + what + ".");
     }
+  }
+  for (const auto& [what, count] : left_out.replaced) {
+    scene.notes.push_back("Replaced: " + std::to_string(count) + " " + what + ".");
   }
 }
 

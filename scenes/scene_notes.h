@@ -1,4 +1,4 @@
-// Internal to scenes/: what a reader leaves out of a file, and the notes about it.
+// Internal to scenes/: what a reader leaves out of a file or replaces, and the notes about it.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,18 @@
 
 namespace marti::scenes {
 
-/// What a reader leaves out, with counts.
+/// What a reader leaves out or replaces, with counts.
 struct LeftOut {
-  std::map<std::string, std::uint64_t> features;  ///< by a description in the plural
+  bool strict = false;                            ///< FileOptions::strict
+  std::map<std::string, std::uint64_t> features;  ///< left out, by a description in the plural
+  std::map<std::string, std::uint64_t>
+      replaced;  ///< by a description in the plural and of what stands for it
+
+  /// Counts one thing that is replaced. If that is not wanted, throws UserError(`refusal`).
+  void replace(const std::string& what, const std::string& refusal);
 };
 
-/// A note for each feature with a count above 0.
+/// A note for each feature and each kind replaced with a count above 0.
 void note_left_out(const LeftOut& left_out, Scene& scene);
 
 /// A note that `count` of all polygons, in this `kind` of file "triangles" or "polygons", are left out

@@ -22,6 +22,46 @@ std::string_view without_end(std::string_view line) {
 
 }  // namespace
 
+std::string in_utf8(std::string text) {
+  const bool little = text.starts_with("\xff\xfe");
+  if (!little && !text.starts_with("\xfe\xff")) {
+    return text;
+  }
+  const auto unit = [&](std::size_t at) {
+    const auto first = static_cast<unsigned char>(text[at]);
+    const auto second = static_cast<unsigned char>(text[at + 1]);
+    return static_cast<std::uint32_t>(little ? first | second << 8U : first << 8U | second);
+  };
+  std::string result;
+  for (std::size_t at = 2; at + 1 < text.size(); at += 2) {
+    std::uint32_t code = unit(at);
+    if (code >= 0xd800 && code < 0xe000) {
+      const std::uint32_t low = code < 0xdc00 && at + 3 < text.size() ? unit(at + 2) : 0;
+      const bool pair = low >= 0xdc00 && low < 0xe000;
+      code = pair ? 0x10000 + ((code - 0xd800) << 10U) + (low - 0xdc00) : 0xfffd;
+      at += pair ? 2U : 0U;
+    }
+    const auto add = [&result](std::uint32_t byte) { result += static_cast<char>(byte); };
+    const auto add_rest = [&](std::uint32_t shift) { add(0x80U | (code >> shift & 0x3fU)); };
+    if (code < 0x80) {
+      add(code);
+    } else if (code < 0x800) {
+      add(0xc0U | code >> 6U);
+      add_rest(0);
+    } else if (code < 0x10000) {
+      add(0xe0U | code >> 12U);
+      add_rest(6);
+      add_rest(0);
+    } else {
+      add(0xf0U | code >> 18U);
+      add_rest(12);
+      add_rest(6);
+      add_rest(0);
+    }
+  }
+  return result;
+}
+
 std::string in_quotes(std::string_view text) { return "'" + sim::shown(text) + "'"; }
 
 TextLines::TextLines(std::string_view text, std::string name, Style style)
@@ -122,6 +162,6 @@ std::string TextLines::place() const {
   return name_ + ":" + std::to_string(std::max<std::uint64_t>(line_, 1));
 }
 
-void TextLines::fail(const std::string& what) const { throw sim::UserError(place() + ": " + what); }
+void TextLines::fail(const std::string& what) const { throw sim::UserError(refusal(what)); }
 
 }  // namespace marti::scenes

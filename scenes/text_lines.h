@@ -42,6 +42,8 @@ class TextLines {
   [[nodiscard]] std::uint64_t line() const { return line_; }
   /// "FILE:LINE".
   [[nodiscard]] std::string place() const;
+  /// The text of fail(): place() and the reason.
+  [[nodiscard]] std::string refusal(const std::string& what) const { return place() + ": " + what; }
   /// Throws a UserError that begins with place().
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -59,6 +61,10 @@ class TextLines {
   std::string_view content_;
   std::vector<std::string_view> words_;
 };
+
+/// The text in UTF-8: one that begins with the byte order mark of UTF-16 is converted, with U+FFFD for what
+/// is no character; any other is returned as it is.
+[[nodiscard]] std::string in_utf8(std::string text);
 
 /// Foreign text in single quotation marks.
 [[nodiscard]] std::string in_quotes(std::string_view text);

@@ -85,6 +85,9 @@ void declare_frame_keys(sim::Schema& schema) {
                 "auto: a file without lights gets one over the camera's shoulder and ambient light, with "
                 "image.integrator = \"path\" only if no triangle of it emits light; always: every scene "
                 "gets them beside its own; never: none does");
+  schema.boolean("scene.strict", false,
+                 "refuse a file with parts that are missing or that its format does not allow; else what can "
+                 "be replaced is, with a note (docs/scenes.md)");
   schema.section("frames", "the frames of an animated scene");
   schema.integer("frames.count", 1, {1, 1'000'000}, "frames", "how many; `marti run` renders one");
   schema.integer("frames.first", 0, {0, 1'000'000'000}, "",
@@ -197,6 +200,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.open.file.camera = config.text("scene.camera");
   frame.open.file.animation = config.text("scene.animation");
   frame.open.file.default_light = config.choice_as<scenes::DefaultLight>("scene.default_light");
+  frame.open.file.strict = config.boolean("scene.strict");
   frame.frames.count = count(config, "frames.count");
   frame.frames.first = count(config, "frames.first");
   frame.frames.rate = config.real("frames.rate");
@@ -207,6 +211,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.render.max_depth = count(config, "image.max_depth");
   frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
   const bool path = frame.render.integrator == processors::program::Integrator::path;
+  frame.open.file.emitters_light = path;
   frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
   config.mark_unused_reason("image.min_weight",
                             "a path ends by chance, because rays cut off would darken the image",
@@ -216,7 +221,6 @@ FrameConfig read_frame(sim::Config& config) {
     frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
   }
   config.mark_unused_reason("image.seed", "one sample lies in the pixel's centre", "image.samples");
-  frame.open.file.emitters_light = path;
   frame.render.shadows = config.boolean("image.shadows");
   frame.render.voxel_cut = config.real("image.voxel_cut");
   if (frame.render.voxel_cut > 0.0) {

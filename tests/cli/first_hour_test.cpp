@@ -37,7 +37,7 @@ TEST_P(FirstHour, TheAnswerNamesTheRemedy) {
   write(directory.path() / "empty.toml", "[cache]\nsize =\n");
   write(directory.path() / "unit.toml", "[cache]\nsize = \"16 KB\"\n");
   write(directory.path() / "scene.toml", "[scene]\nsource = \"mine.glb\"\n");
-  write(directory.path() / "lost.obj", "v 0 0 0\nmtllib lost.mtl\n");
+  write(directory.path() / "lost.obj", "v 0 0 0\nf 1 1 9\n");
   const Outcome outcome =
       shell("cd " + quoted(directory.path()) + " && " + quoted(MARTI_PROGRAM) + " " + GetParam().arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.output;
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ToleranceWithoutUnit", "run configs/marti.toml --within 2", {"such as \"2 %\""}},
         Mistake{"OutputIsAFile", "run configs/marti.toml -o afile", {"afile: is a file", "directory"}},
         Mistake{"NoScene", "run scene.toml", {"scene.toml:2: scene.source", "mine.glb", "beside it"}},
-        Mistake{"NoMaterialLibrary", "scene info lost.obj", {"lost.obj:2: 'lost.mtl' cannot be read"}},
+        Mistake{"NoPosition", "scene info lost.obj", {"lost.obj:2: a corner refers to position 9"}},
         Mistake{
             "WrongScene", "run configs/marti.toml --set scene.source=teapott", {"did you mean \"teapot\""}},
         Mistake{"RunOfAStudy", "run configs/paper.toml", {"paper.toml:", "for `marti study paper`"}},

@@ -24,6 +24,12 @@ struct Fault {
   const char* reason;
 };
 
+FileOptions strict() {
+  FileOptions options;
+  options.strict = true;
+  return options;
+}
+
 TEST(ObjHostile, EveryFaultIsRefusedWithFileLineAndReason) {
   const std::vector<Fault> faults = {
       {"v 1 2", "'v' needs 3 numbers"},
@@ -71,7 +77,7 @@ TEST(ObjHostile, EveryFaultIsRefusedWithFileLineAndReason) {
   folder.write("a.mtl", "newmtl a\n");
   EXPECT_EQ(folder.refusal("a.obj", good + face), "no UserError");
   for (const Fault& fault : faults) {
-    const std::string message = folder.refusal("a.obj", good + fault.line + "\n" + face);
+    const std::string message = folder.refusal("a.obj", good + fault.line + "\n" + face, strict());
     EXPECT_EQ(message.rfind("a.obj:7: ", 0), 0U) << fault.line << ": " << message;
     EXPECT_NE(message.find(fault.reason), std::string::npos) << fault.line << ": " << message;
     EXPECT_EQ(sim::shown(message, sim::all_shown), message);
@@ -111,7 +117,7 @@ TEST(ObjHostile, EveryFaultOfALibraryIsRefusedWithFileLineAndReason) {
   const SceneFolder folder;
   for (const Fault& fault : faults) {
     folder.write("a.mtl", std::string("# one\nnewmtl a\n") + fault.line + "\n");
-    const std::string message = folder.refusal("a.obj", good + "usemtl a\n" + face);
+    const std::string message = folder.refusal("a.obj", good + "usemtl a\n" + face, strict());
     EXPECT_EQ(message.rfind("a.mtl:3: ", 0), 0U) << fault.line << ": " << message;
     EXPECT_NE(message.find(fault.reason), std::string::npos) << fault.line << ": " << message;
   }

@@ -239,6 +239,7 @@ TEST(Obj, TexturesLieBesideTheirLibrary) {
   // What no face uses is read only when it is asked for.
   FileOptions all;
   all.read_unused = true;
+  all.strict = true;
   const std::string missing = folder.refusal("a.obj", text, all, one_texel);
   EXPECT_EQ(missing.rfind("lib/a.mtl:9: 'lib/missing.png' cannot be read", 0), 0U) << missing;
   FileUse use;

@@ -1,0 +1,137 @@
+// Files as people have them: with parts that are missing or that the format does not allow, which are
+// replaced with a note that counts them, and refused where the options say so. docs/scenes.md lists the
+// kinds.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include "loaded_scene.h"
+#include "text_scene.h"
+
+namespace marti::scenes {
+namespace {
+
+using testing::has_note;
+
+/// Decodes nothing but images that begin with "A".
+Texture letters(std::span<const std::byte> bytes, std::string_view name) {
+  if (bytes[0] != std::byte{'A'}) {
+    throw sim::UserError("it is no image");
+  }
+  return texture_from_samples(name, 1, 1, 3, std::array<std::uint8_t, 3>{1, 2, 3});
+}
+
+struct Kind {
+  std::string bytes;
+  std::string note;     ///< "Replaced: ..."
+  std::string refusal;  ///< a part of the message with FileOptions::strict
+};
+
+/// Opens each with its two triangles and one note; with `strict` refuses each.
+void expect_replaced(const testing::SceneFolder& folder, const std::string& name,
+                     const std::vector<Kind>& kinds) {
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.note);
+    Scene scene;
+    EXPECT_NO_THROW(scene = folder.open(name, kind.bytes, {}, letters))
+        << folder.refusal(name, kind.bytes, {}, letters);
+    EXPECT_EQ(scene.triangles.size(), 2U);
+    std::size_t replaced = 0;
+    for (const std::string& note : scene.notes) {
+      replaced += note.starts_with("Replaced: ") ? 1U : 0U;
+    }
+    EXPECT_EQ(replaced, 1U);
+    EXPECT_TRUE(has_note(scene, "Replaced: " + kind.note)) << describe(scene);
+    for (const Material& material : scene.materials) {
+      EXPECT_TRUE(material.texture == no_texture || material.texture < scene.textures.size());
+    }
+    FileOptions strict;
+    strict.strict = true;
+    const std::string refusal = folder.refusal(name, kind.bytes, strict, letters);
+    EXPECT_NE(refusal.find(kind.refusal), std::string::npos) << refusal;
+  }
+}
+
+TEST(Replaced, OfObj) {
+  const testing::SceneFolder folder;
+  folder.write("twice.mtl", "newmtl a\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
+  folder.write("nameless.mtl", "newmtl\nKd 1 0 0\n");
+  folder.write("options.mtl", "newmtl a\nmap_Kd -type sphere a.png\n");
+  folder.write("space.mtl", "newmtl a\nmap_Kd -colorspace sRGB a.png\n");
+  folder.write("none.mtl", "newmtl a\nmap_Kd none.png\n");
+  folder.write("bad.mtl", "newmtl a\nmap_Kd bad.png\n");
+  folder.write("unnamed.mtl", "newmtl a\nmap_Kd -clamp on\n");
+  folder.write("a.png", "A");
+  folder.write("bad.png", "B");
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
+  const std::string face = "f 1 2 3 4\n";
+  const auto with = [&](const std::string& library) {
+    return "mtllib " + library + "\nusemtl a\n" + square + face;
+  };
+  expect_replaced(
+      folder, "a.obj",
+      {{"mtllib missing.mtl\n" + square + face, "1 material libraries that cannot be read, by none",
+        "a.obj:1: 'missing.mtl' cannot be read"},
+       {"mtllib\n" + square + face, "1 statements mtllib without a file's name", "mtllib needs the name"},
+       {"usemtl other\n" + square + face,
+        "1 statements usemtl of a material that no library has, by matt grey",
+        "there is no material 'other'"},
+       {with("twice.mtl"), "1 further definitions of a material's name, by the first",
+        "defined a second time"},
+       {"mtllib nameless.mtl\nusemtl\n" + square + face, "1 materials without a name", "newmtl needs a name"},
+       {square + "f 1//1 2//1 3//2 4//3\n", "2 normals of corners that are not given, by the face's own",
+        "normal 2, but 1 are given"},
+       {square + "f 1/1 2/2 3/1 4/1\n", "1 texture coordinates of corners that are not given",
+        "texture coordinate 2, but 1 are given"},
+       {with("options.mtl"), "1 options -type of textures", "no option '-type'"},
+       {with("space.mtl"), "1 options -colorspace of textures", "no option '-colorspace'"},
+       {with("none.mtl"), "1 textures that cannot be read, by none", "none.mtl:2: 'none.png' cannot be read"},
+       {with("bad.mtl"), "1 textures that cannot be decoded, by none", "it is no image"},
+       {with("unnamed.mtl"), "1 textures without a file's name, by none", "map_Kd needs the name"}});
+
+  EXPECT_EQ(folder.open("a.obj", with("twice.mtl")).materials[0].color, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(folder.open("a.obj", "mtllib nameless.mtl\nusemtl\n" + square + face).materials[0].color,
+            glm::dvec3(1, 0, 0));
+  // A face without one of its normals has none, and a later face has its own.
+  const Scene normals = folder.open("a.obj", square + "f 1//1 2//1 3//9\nf 1//1 2//1 3//1\n");
+  EXPECT_EQ(normals.normals[normals.triangles[0].vertex[0]], glm::dvec3(0.0));
+  EXPECT_EQ(normals.normals[normals.triangles[1].vertex[0]], glm::dvec3(0, 0, 1));
+  // Options of textures end where the name begins.
+  EXPECT_EQ(folder.open("a.obj", with("options.mtl"), {}, letters).textures.size(), 1U);
+}
+
+/// The text, which is ASCII but for "\xe4", in UTF-16.
+std::string utf16(const std::string& text, bool little) {
+  std::string result = little ? "\xff\xfe" : "\xfe\xff";
+  for (const char c : text) {
+    result += little ? std::string{c, '\0'} : std::string{'\0', c};
+  }
+  return result;
+}
+
+TEST(Replaced, EncodingsOfText) {
+  const testing::SceneFolder folder;
+  const std::string text = "mtllib a.mtl\r\nusemtl \xe4\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 3\r\n";
+  FileOptions strict;
+  strict.strict = true;
+  for (const bool little : {false, true}) {
+    folder.write("a.mtl", utf16("newmtl \xe4\r\nKd 1 0 0\r\n", little));
+    const Scene scene = folder.open("a.obj", utf16(text, little), strict);
+    EXPECT_EQ(scene.materials[0].name, "\xc3\xa4");
+    EXPECT_EQ(scene.materials[0].color, glm::dvec3(1, 0, 0));
+    // Pairs of surrogates, halves of one, and half a unit at the end.
+    const std::string face = utf16("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\no ", little);
+    for (const std::string& rest :
+         {std::string("\x3d\xd8\x00\xde", 4), std::string("\xd8\x3d\xde\x00", 4), std::string("\xd8\x00", 2),
+          std::string("\x00\xd8", 2), std::string("x")}) {
+      EXPECT_EQ(folder.refusal("a.obj", face + rest, strict), "no UserError");
+    }
+  }
+  folder.write("a.mtl", "\xef\xbb\xbfnewmtl \xe4\nKd 1 0 0\n");
+  EXPECT_EQ(folder.refusal("a.obj", "\xef\xbb\xbf" + text, strict), "no UserError");
+}
+
+}  // namespace
+}  // namespace marti::scenes
