@@ -148,7 +148,8 @@ class GltfPoses : public PoseSource {
       animation_.emplace(model_, chosen_);
     }
     still_.name = model_.path().filename().string();
-    nodes_ = gltf::nodes_of_scene(model_);
+    LeftOut left_out = model_.replaced();
+    nodes_ = gltf::nodes_of_scene(model_, left_out);
     skins_.emplace(model_, nodes_);
     Pose pose;
     pose.nodes = gltf::place_nodes(model_, nodes_, {});
@@ -156,7 +157,6 @@ class GltfPoses : public PoseSource {
     model_.take_memory(expanded.bytes(), "its instances take");
     still_.positions.reserve(expanded.vertices);
     still_.triangles.reserve(expanded.triangles);
-    LeftOut left_out;
     gltf::Materials materials(model_, decode, still_, left_out);
     gltf::MeshReader meshes(model_, materials, *skins_, still_, left_out);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -181,7 +181,7 @@ class GltfPoses : public PoseSource {
       ranges_ = meshes.ranges();
       pose = pose_at(0.0);
     }
-    look(pose);
+    look(pose, left_out);
     use_ = gltf::use_of(model_, nodes_, materials,
                         {skins_->size(), animation_ ? 1U : 0U, has_camera_ ? 1U : 0U});
     if (model_.options().read_unused) {
@@ -203,7 +203,7 @@ class GltfPoses : public PoseSource {
 
   /// Sets camera and lights, with default ones if the file has none and the options ask for them; those do
   /// not move.
-  void look(const Pose& pose) {
+  void look(const Pose& pose, LeftOut& left_out) {
     has_camera_ = gltf::set_camera(model_, pose.nodes, still_);
     if (!has_camera_) {
       Scene first = still_;
@@ -212,7 +212,7 @@ class GltfPoses : public PoseSource {
       still_.camera = first.camera;
       still_.notes.emplace_back(no_camera_note);
     }
-    gltf::add_lights(model_, pose.nodes, still_);
+    gltf::add_lights(model_, pose.nodes, still_, left_out);
     has_lights_ = !still_.lights.empty();
     if (add_default_light(still_, model_.options())) {
       default_light_ = still_.lights.back();
@@ -255,7 +255,8 @@ class GltfPoses : public PoseSource {
     }
     if (has_lights_) {
       scene.lights.clear();
-      gltf::add_lights(model_, pose.nodes, scene);
+      LeftOut noted_already = model_.replaced();
+      gltf::add_lights(model_, pose.nodes, scene, noted_already);
       if (default_light_) {
         scene.lights.push_back(*default_light_);
       }

@@ -4,11 +4,12 @@
 // sparse accessors; positions, normals, the base colour texture's coordinates; morph targets of positions and
 // normals (section 3.7.2.2); skins with any number of joints a vertex (3.7.3); animations of nodes and morph
 // weights (3.11, Appendix C); materials; perspective cameras; KHR_lights_punctual,
-// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength, KHR_mesh_quantization;
-// where marti is built with their libraries KHR_draco_mesh_compression and EXT_meshopt_compression (also
-// under its name KHR_meshopt_compression), of the whole file. Left out with a note: points and lines,
-// displacements of texture coordinates, other textures, alpha modes. One source triangle is one polygon.
-// Indices below 0 count as "not given" where glTF allows that.
+// KHR_materials_transmission, KHR_materials_ior, KHR_materials_emissive_strength, KHR_mesh_quantization,
+// KHR_texture_transform, EXT_texture_webp; where marti is built with their libraries
+// KHR_draco_mesh_compression and EXT_meshopt_compression (also under its name KHR_meshopt_compression), of
+// the whole file. Replaced and counted: what docs/scenes.md lists, unless FileOptions::strict. Left out with
+// a note: points and lines, displacements of texture coordinates, other textures, alpha modes. One source
+// triangle is one polygon. Indices below 0 count as "not given" where glTF allows that.
 //
 // Motion. The static pose (nodes, morph weights and joints as in the file, no animation) decides which
 // triangles there are: one with a corner that is not finite or beyond 1e30 there is left out of all poses. A
@@ -44,7 +45,7 @@ namespace marti::scenes {
 /// FileOptions::default_light says, with a note each. Triangles with a position that is not finite are left
 /// out, and a note counts them; degenerate ones are kept and counted. `decode` may be empty; then a material
 /// with a base colour texture is refused. Throws UserError, the path first, for anything missing, broken, out
-/// of range or not supported; no input makes it crash or loop. Of
+/// of range or not supported, unless it is replaced; no input makes it crash or loop. Of
 /// several animations only the chosen one is checked; facts() checks all.
 [[nodiscard]] AnimatedScene open_gltf(const std::filesystem::path& path, const FileOptions& options,
                                       const ImageDecoder& decode);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <string_view>
 
 #include "scenes/gltf_draco.h"
@@ -13,9 +14,25 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> supported_extensions = {
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_mesh_quantization"};
+constexpr std::array<std::string_view, 7> supported_extensions = {
+    "EXT_texture_webp",     "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_transmission", "KHR_mesh_quantization",
+    "KHR_texture_transform"};
+/// Extensions that change no geometry: without them a file looks otherwise, and no more.
+constexpr std::array<std::string_view, 14> appearances = {"KHR_materials_anisotropy",
+                                                          "KHR_materials_clearcoat",
+                                                          "KHR_materials_diffuse_transmission",
+                                                          "KHR_materials_dispersion",
+                                                          "KHR_materials_iridescence",
+                                                          "KHR_materials_pbrSpecularGlossiness",
+                                                          "KHR_materials_sheen",
+                                                          "KHR_materials_specular",
+                                                          "KHR_materials_unlit",
+                                                          "KHR_materials_variants",
+                                                          "KHR_materials_volume",
+                                                          "KHR_texture_basisu",
+                                                          "KHR_xmp",
+                                                          "KHR_xmp_json_ld"};
 constexpr const char* draco = "KHR_draco_mesh_compression";
 
 bool is_meshopt(const std::string& extension) {
@@ -56,16 +73,23 @@ std::string why_unsupported(const std::string& extension) {
   return "which is not supported";
 }
 
-std::string missing_requirement(const tinygltf::Model& file) {
-  const auto missing =
-      std::find_if_not(file.extensionsRequired.begin(), file.extensionsRequired.end(), is_supported);
-  return missing == file.extensionsRequired.end() ? std::string() : *missing;
+std::vector<std::string> missing_requirements(const tinygltf::Model& file) {
+  std::vector<std::string> missing;
+  std::copy_if(file.extensionsRequired.begin(), file.extensionsRequired.end(), std::back_inserter(missing),
+               [](const std::string& extension) { return !is_supported(extension); });
+  return missing;
+}
+
+bool is_appearance(const std::string& extension) {
+  return std::find(appearances.begin(), appearances.end(), extension) != appearances.end();
 }
 
 std::string ignored_extensions(const tinygltf::Model& file) {
   std::string names;
   for (const std::string& extension : file.extensionsUsed) {
-    if (!is_supported(extension)) {
+    const auto& required = file.extensionsRequired;
+    if (!is_supported(extension) &&
+        std::find(required.begin(), required.end(), extension) == required.end()) {
       names += (names.empty() ? "" : ", ") + sim::shown(extension);
     }
   }

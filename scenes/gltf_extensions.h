@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include <tiny_gltf.h>
 
@@ -20,10 +21,14 @@ inline constexpr std::array<const char*, 2> meshopt_names = {"EXT_meshopt_compre
 /// Why an extension cannot be read: "not supported", or that marti was built without the library for it.
 [[nodiscard]] std::string why_unsupported(const std::string& extension);
 
-/// The first extension that the file requires and that is not supported; empty when there is none.
-[[nodiscard]] std::string missing_requirement(const tinygltf::Model& file);
+/// The extensions that the file requires and that are not supported.
+[[nodiscard]] std::vector<std::string> missing_requirements(const tinygltf::Model& file);
 
-/// The extensions that the file uses and that are not supported, with commas between them.
+/// Whether an extension changes how things look and no geometry, so that a file can be read without it.
+[[nodiscard]] bool is_appearance(const std::string& extension);
+
+/// The extensions that the file uses, that it does not require and that are not supported, with commas
+/// between them.
 [[nodiscard]] std::string ignored_extensions(const tinygltf::Model& file);
 
 /// The extension with which the bytes of a buffer view are compressed (EXT_meshopt_compression or its Khronos

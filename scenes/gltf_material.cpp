@@ -6,16 +6,24 @@
 #include <glm/common.hpp>
 
 #include "scenes/image_file.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
 namespace {
 
 constexpr double largest_shininess = 1e5;
+constexpr const char* no_image = "textures that are missing or cannot be decoded, by none";
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
   const auto found = map.find(name);
   return found == map.end() ? nullptr : &found->second;
+}
+
+/// The image of a texture; if it has none that all programs can read, that of EXT_texture_webp.
+int image_of(const tinygltf::Texture& texture) {
+  const tinygltf::Value* const webp = extension(texture.extensions, "EXT_texture_webp");
+  return texture.source < 0 && webp != nullptr ? index_in(*webp, "source").value_or(-1) : texture.source;
 }
 
 bool in_range(const std::optional<double>& value, double lowest, double highest) {
@@ -109,14 +117,37 @@ Materials::Use Materials::use(int index) {
     return known->second;
   }
   Use use;
-  Material material = convert(index, use.texture_coordinates);
+  Material material = convert(index, use);
   use.material = static_cast<std::uint32_t>(scene_.materials.size());
   scene_.materials.push_back(std::move(material));
   used_.emplace(index, use);
   return use;
 }
 
-Material Materials::convert(int index, int& texture_coordinates) {
+/// KHR_texture_transform: scaled, then turned counter-clockwise as seen, then moved.
+TextureTransform Materials::transform_of(const tinygltf::Value& given, const std::string& user) const {
+  const auto pair = [&](const char* key, double otherwise) {
+    if (!given.IsObject() || !given.Has(key)) {
+      return glm::dvec2(otherwise);
+    }
+    const tinygltf::Value& list = given.Get(key);
+    glm::dvec2 values;
+    for (int i = 0; i < 2; ++i) {
+      const bool number = list.ArrayLen() == 2 && list.Get(i).IsNumber();
+      values[i] = checked_number(model_, number ? list.Get(i).GetNumberAsDouble() : std::nan(""), -1e9, 1e9,
+                                 user + ": a number of its texture's transform");
+    }
+    return values;
+  };
+  const double turn = checked_number(model_, number_in(given, "rotation").value_or(0.0), -1e9, 1e9,
+                                     user + ": its texture's rotation");
+  const glm::dvec2 scale = pair("scale", 1.0);
+  const glm::dvec2 offset = pair("offset", 0.0);
+  return {{scale.x * std::cos(turn), -scale.x * std::sin(turn), scale.y * std::sin(turn),
+           scale.y * std::cos(turn), offset.x, offset.y}};
+}
+
+Material Materials::convert(int index, Use& use) {
   const std::string name = index < 0 ? "the default material" : "material " + std::to_string(index);
   const tinygltf::Material fallback;
   const tinygltf::Material& source =
@@ -171,12 +202,17 @@ Material Materials::convert(int index, int& texture_coordinates) {
   left_out_.features["alpha modes other than OPAQUE"] += source.alphaMode == "OPAQUE" ? 0U : 1U;
   if (pbr.baseColorTexture.index >= 0) {
     material.texture = texture_index(pbr.baseColorTexture.index, name);
-    texture_coordinates = pbr.baseColorTexture.texCoord;
-    left_out_.features["texture transforms"] +=
-        extension(pbr.baseColorTexture.extensions, "KHR_texture_transform") != nullptr ? 1U : 0U;
-    if (texture_coordinates < 0 || texture_coordinates > 63) {
-      model_.fail(name + ": there is no set of texture coordinates " + std::to_string(texture_coordinates));
+    use.texture_coordinates = pbr.baseColorTexture.texCoord;
+    if (const tinygltf::Value* given = extension(pbr.baseColorTexture.extensions, "KHR_texture_transform")) {
+      use.transform = transform_of(*given, name);
+      use.texture_coordinates =
+          given->Has("texCoord") ? index_in(*given, "texCoord").value_or(-1) : use.texture_coordinates;
     }
+    if (use.texture_coordinates < 0 || use.texture_coordinates > 63) {
+      model_.fail(name + ": there is no set of texture coordinates " +
+                  std::to_string(use.texture_coordinates));
+    }
+    use.texture_coordinates = material.texture == no_texture ? -1 : use.texture_coordinates;
   }
   return material;
 }
@@ -188,14 +224,35 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   if (source.sampler >= 0) {
     sampler = model_.at(model_.data().samplers, source.sampler, "sampler", name);
   }
-  const int image = first_alike(source.source, name);
-  const auto key = std::tuple(image, sampler.wrapS, sampler.wrapT);
-  images_.insert(source.source);
-  const auto known = textures_.find(key);
-  if (known != textures_.end()) {
-    return known->second;
+  for (const int wrap : {sampler.wrapS, sampler.wrapT}) {
+    if (wrap != TINYGLTF_TEXTURE_WRAP_REPEAT && wrap != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
+        wrap != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) {
+      left_out_.replace("wrap modes of textures that glTF does not have, by repeating",
+                        sim::shown(model_.path().string()) + ": sampler " + std::to_string(source.sampler) +
+                            ": there is no wrap mode " + std::to_string(wrap));
+    }
   }
-  Texture decoded = open_image(model_, find_image(image, name), decode_);
+  const int from = image_of(source);
+  if (from < 0) {
+    left_out_.replace(no_image, sim::shown(model_.path().string()) + ": " + name + " refers to image " +
+                                    std::to_string(from) + ", but the file has " +
+                                    std::to_string(model_.data().images.size()));
+    return no_texture;
+  }
+  const int image = first_alike(from, name);
+  const auto key = std::tuple(image, sampler.wrapS, sampler.wrapT);
+  images_.insert(from);
+  const auto [place, is_new] = textures_.try_emplace(key, no_texture);
+  if (!is_new) {
+    return place->second;
+  }
+  Texture decoded;
+  try {
+    decoded = open_image(model_, find_image(image, name), decode_);
+  } catch (const ImageError& error) {
+    left_out_.replace(no_image, error.what());
+    return no_texture;
+  }
   decoded.srgb = true;
   decoded.repeat_u = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   decoded.repeat_v = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -204,10 +261,9 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
               sampler.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT
           ? 1U
           : 0U;
-  const auto index = static_cast<std::uint32_t>(scene_.textures.size());
+  place->second = static_cast<std::uint32_t>(scene_.textures.size());
   scene_.textures.push_back(std::move(decoded));
-  textures_.emplace(key, index);
-  return index;
+  return place->second;
 }
 
 int Materials::first_alike(int image, const std::string& user) {
@@ -226,7 +282,11 @@ int Materials::first_alike(int image, const std::string& user) {
 }
 
 void Materials::check_image(int image) const {
-  static_cast<void>(decode_image(model_, find_image(image, "the file"), decode_));
+  try {
+    static_cast<void>(decode_image(model_, find_image(image, "the file"), decode_));
+  } catch (const ImageError& error) {
+    left_out_.replace(no_image, error.what());
+  }
 }
 
 ImageFile Materials::find_image(int image, const std::string& user) const {

@@ -1,6 +1,8 @@
 // Internal to scenes/: converts glTF materials and textures when they are first used.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "scenes/gltf_model.h"
@@ -36,6 +39,17 @@ namespace marti::scenes::gltf {
 /// The `extras.marti` object, or nullptr.
 [[nodiscard]] const tinygltf::Value* own_extras(const tinygltf::Value& extras);
 
+/// What KHR_texture_transform does to texture coordinates.
+struct TextureTransform {
+  /// (u, v) becomes (u m0 + v m2 + m4, u m1 + v m3 + m5).
+  std::array<double, 6> m{1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+
+  [[nodiscard]] glm::dvec2 operator()(const glm::dvec2& uv) const {
+    return {uv.x * m[0] + uv.y * m[2] + m[4], uv.x * m[1] + uv.y * m[3] + m[5]};
+  }
+  auto operator<=>(const TextureTransform&) const = default;
+};
+
 class Materials {
  public:
   Materials(const Model& model, const ImageDecoder& decode, Scene& scene, LeftOut& left_out)
@@ -44,6 +58,7 @@ class Materials {
   struct Use {
     std::uint32_t material = 0;    ///< index into Scene::materials
     int texture_coordinates = -1;  ///< the TEXCOORD set that its texture needs, -1 if none
+    TextureTransform transform;    ///< of these
   };
   /// The material of a primitive; -1 is glTF's default material.
   Use use(int index);
@@ -56,7 +71,8 @@ class Materials {
   void check_image(int image) const;
 
  private:
-  Material convert(int index, int& texture_coordinates);
+  Material convert(int index, Use& use);
+  [[nodiscard]] TextureTransform transform_of(const tinygltf::Value& given, const std::string& user) const;
   std::uint32_t texture_index(int texture, const std::string& user);
   /// The first image in use with the same bytes, so that equal images are decoded once and share a texture.
   int first_alike(int image, const std::string& user);

@@ -63,7 +63,7 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   if (use.texture_coordinates >= 0) {
     const std::string semantic = "TEXCOORD_" + std::to_string(use.texture_coordinates);
     coordinates = {attribute(primitive.attributes, semantic),
-                   exact_view(model_, primitive.extras, "TEXCOORD_0")};
+                   exact_view(model_, primitive.extras, "TEXCOORD_0"), use.transform};
     left_out_.features["textures on primitives without the texture coordinates for them"] +=
         coordinates.accessor < 0 ? 1U : 0U;
     for (const auto& target : primitive.targets) {
@@ -159,7 +159,8 @@ void MeshReader::add_coordinates(Coordinates coordinates, const Vertices& vertic
   }
   scene_.uvs.resize(vertices.first, glm::dvec2(0.0));
   for (std::size_t i = 0; i < vertices.count; ++i) {
-    const glm::dvec2 uv(values[2 * i], values[2 * i + 1]);
+    const glm::dvec2 given(values[2 * i], values[2 * i + 1]);
+    const glm::dvec2 uv = coordinates.transform == TextureTransform() ? given : coordinates.transform(given);
     scene_.uvs.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0));
   }
 }

@@ -57,6 +57,7 @@ class MeshReader {
   struct Coordinates {  // of textures
     int accessor = -1;
     int exact = -1;  // the buffer view of exact_view()
+    TextureTransform transform;
     auto operator<=>(const Coordinates&) const = default;
   };
   struct User {  // the node whose mesh is added

@@ -191,8 +191,15 @@ Model::Model(std::filesystem::path path, const FileOptions& options) : SourceFil
 }
 
 void Model::parse() {
-  const std::string file = read(2);  // tinygltf copies the part that is not JSON
+  replaced_.strict = options().strict;
+  std::string file = read(2);  // tinygltf copies the part that is not JSON
   const bool binary = file.starts_with("glTF");
+  if (std::string padded = binary ? with_padding(file) : std::string(); !padded.empty()) {
+    replaced_.replace("binary glTF files whose chunks do not end on multiples of 4 bytes, by padded ones",
+                      sim::shown(path().string()) +
+                          ": it is no valid glTF 2.0: a chunk does not end on a multiple of 4 bytes");
+    file = std::move(padded);
+  }
   const std::string_view json = json_of(file, binary);
   if (json.size() > max_json_bytes || file.size() > 0xffffffffU) {
     fail("it is too large: at most 1 GiB of JSON and 4 GiB in all can be read");
@@ -223,8 +230,14 @@ void Model::parse() {
     fail(access.refusal());
   }
   // tinygltf reads the names of the extensions before it fails on data that need one of them.
-  if (const std::string extension = missing_requirement(data_); !extension.empty()) {
-    fail("it requires the extension " + double_quoted(extension) + ", " + why_unsupported(extension));
+  for (const std::string& extension : missing_requirements(data_)) {
+    const std::string reason =
+        "it requires the extension " + double_quoted(extension) + ", " + why_unsupported(extension);
+    if (!is_appearance(extension)) {
+      fail(reason);
+    }
+    replaced_.replace("required extensions " + extension + ", by what the file has without it",
+                      sim::shown(path().string()) + ": " + reason);
   }
   // Some faults are only reported by a message: for example, a primitive that cannot be parsed is dropped.
   const std::string faults = true_faults(error);

@@ -14,6 +14,7 @@
 
 #include <tiny_gltf.h>
 
+#include "scenes/scene_notes.h"
 #include "scenes/source_file.h"
 
 namespace marti::scenes {
@@ -43,6 +44,9 @@ class Model : public SourceFile {
     }
     return list[static_cast<std::size_t>(index)];
   }
+
+  /// What was replaced when the file was parsed.
+  [[nodiscard]] const LeftOut& replaced() const { return replaced_; }
 
   /// The bytes of a buffer view; its range is checked against its buffer.
   [[nodiscard]] std::span<const std::byte> view_bytes(int view, const std::string& user) const;
@@ -81,6 +85,7 @@ class Model : public SourceFile {
   bool parse_with(const std::string& file, FileAccess& access, std::string& error);
 
   tinygltf::Model data_;
+  LeftOut replaced_;
   mutable std::vector<std::atomic<bool>> read_;  // for each accessor; animations are read by many threads
 };
 

@@ -78,10 +78,16 @@ glm::dmat4 local_transform(const Model& model, int index, const NodeChange& chan
   return m;
 }
 
-/// The parent of each node, -1 for none. Throws for a node with two parents and for cycles.
-std::vector<int> find_parents(const Model& model) {
+struct Family {
+  std::vector<int> parents;  // of each node, -1 for none
+  std::vector<int> order;    // all nodes, each behind its parent
+};
+
+/// Throws for a node with two parents and for cycles.
+Family find_parents(const Model& model) {
   const std::vector<tinygltf::Node>& nodes = model.data().nodes;
-  std::vector<int> parents(nodes.size(), -1);
+  Family family{std::vector<int>(nodes.size(), -1), {}};
+  std::vector<int>& parents = family.parents;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const int parent = static_cast<int>(i);
     for (const int child : nodes[i].children) {
@@ -95,7 +101,7 @@ std::vector<int> find_parents(const Model& model) {
     }
   }
   // As each node has at most one parent, the nodes not reached from the roots are those in and below cycles.
-  std::vector<int> reached;
+  std::vector<int>& reached = family.order;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (parents[i] < 0) {
       reached.push_back(static_cast<int>(i));
@@ -109,19 +115,54 @@ std::vector<int> find_parents(const Model& model) {
     model.fail("its nodes are recursive: " + std::to_string(nodes.size() - reached.size()) +
                " of them are their own ancestors or below such a node");
   }
-  return parents;
+  return family;
 }
 
-std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& parents) {
-  const tinygltf::Model& data = model.data();
+/// The roots that a scene lists, each once, and not those below another.
+std::vector<int> distinct_roots(const Model& model, const Family& family, int scene, LeftOut& left_out) {
+  const std::vector<int>& listed = model.data().scenes[static_cast<std::size_t>(scene)].nodes;
+  std::vector<char> is_listed(family.parents.size(), 0);
+  for (const int root : listed) {
+    static_cast<void>(model.at(model.data().nodes, root, "node", "scene " + std::to_string(scene)));
+    is_listed[static_cast<std::size_t>(root)] = 1;
+  }
+  std::vector<char> is_below(family.parents.size(), 0);
+  for (const int node : family.order) {
+    const int parent = family.parents[static_cast<std::size_t>(node)];
+    if (parent >= 0) {
+      const auto above = static_cast<std::size_t>(parent);
+      is_below[static_cast<std::size_t>(node)] = static_cast<char>(is_listed[above] | is_below[above]);
+    }
+  }
   std::vector<int> roots;
+  std::vector<char> taken(family.parents.size(), 0);
+  for (const int root : listed) {
+    const auto at = static_cast<std::size_t>(root);
+    const bool again = taken[at] != 0;
+    if (again || family.parents[at] >= 0) {
+      left_out.replace("nodes that a scene lists twice or although they are children, by one in its place",
+                       sim::shown(model.path().string()) + ": " + name_of_node(root) +
+                           " is listed in scene " + std::to_string(scene) +
+                           " twice, or although it is a child of another node");
+    }
+    if (!again && is_below[at] == 0) {
+      roots.push_back(root);
+    }
+    taken[at] = 1;
+  }
+  return roots;
+}
+
+std::vector<int> roots_of_scene(const Model& model, const Family& family, LeftOut& left_out) {
+  const tinygltf::Model& data = model.data();
   if (data.scenes.empty()) {
+    std::vector<int> roots;
     if (!model.options().scene.empty()) {
       model.fail_choice("scene", "scene '" + sim::shown(model.options().scene) +
                                      "' is asked for, but the file has no scenes");
     }
-    for (std::size_t i = 0; i < parents.size(); ++i) {
-      if (parents[i] < 0) {
+    for (std::size_t i = 0; i < family.parents.size(); ++i) {
+      if (family.parents[i] < 0) {
         roots.push_back(static_cast<int>(i));
       }
     }
@@ -135,23 +176,14 @@ std::vector<int> roots_of_scene(const Model& model, const std::vector<int>& pare
     }
     index = chosen_index(model, model.options().scene, "scene", names);
   }
-  roots = model.at(data.scenes, index, "scene", "the file").nodes;
-  std::vector<char> seen(data.nodes.size(), 0);
-  for (const int root : roots) {
-    static_cast<void>(model.at(data.nodes, root, "node", "scene " + std::to_string(index)));
-    if (parents[static_cast<std::size_t>(root)] >= 0 || seen[static_cast<std::size_t>(root)] != 0) {
-      model.fail(name_of_node(root) + " is listed in scene " + std::to_string(index) +
-                 " twice, or although it is a child of another node");
-    }
-    seen[static_cast<std::size_t>(root)] = 1;
-  }
-  return roots;
+  static_cast<void>(model.at(data.scenes, index, "scene", "the file"));
+  return distinct_roots(model, family, index, left_out);
 }
 
 }  // namespace
 
-std::vector<SceneNode> nodes_of_scene(const Model& model) {
-  const std::vector<int> roots = roots_of_scene(model, find_parents(model));
+std::vector<SceneNode> nodes_of_scene(const Model& model, LeftOut& left_out) {
+  const std::vector<int> roots = roots_of_scene(model, find_parents(model), left_out);
   std::vector<SceneNode> nodes;
   // An explicit stack, because the file decides the depth of the hierarchy. Pushed in reverse to keep order.
   std::vector<SceneNode> open;

@@ -40,7 +40,7 @@ using NodeChanges = std::map<int, NodeChange>;  ///< by node
 
 /// The nodes of the chosen scene, parents before children, in the file's order. Throws UserError for a scene
 /// that does not exist, nodes with two parents, and cycles.
-[[nodiscard]] std::vector<SceneNode> nodes_of_scene(const Model& model);
+[[nodiscard]] std::vector<SceneNode> nodes_of_scene(const Model& model, LeftOut& left_out);
 
 /// The nodes' transforms. Throws UserError for one that is not finite.
 [[nodiscard]] std::vector<PlacedNode> place_nodes(const Model& model, const std::vector<SceneNode>& nodes,

@@ -98,6 +98,34 @@ std::string with_json(std::string_view glb, std::string json) {
   return file;
 }
 
+std::string with_padding(std::string_view glb) {
+  constexpr std::size_t headers = 20;
+  const auto number_at = [glb](std::size_t at) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, glb.data() + at, sizeof number);
+    return std::size_t{number};
+  };
+  if (glb.size() < headers || number_at(8) != glb.size()) {
+    return {};
+  }
+  const std::size_t json = number_at(12);
+  const std::size_t binary = headers + json;
+  const bool has_binary = binary + 8 <= glb.size();
+  const std::size_t bytes = has_binary ? number_at(binary) : 0;
+  const std::size_t end = has_binary ? binary + 8 + bytes : binary;
+  if ((json % 4 == 0 && bytes % 4 == 0) || end != glb.size()) {
+    return {};
+  }
+  std::string file = with_json(glb, std::string(glb.substr(headers, json)));
+  if (has_binary) {
+    file.resize((file.size() + 3) / 4 * 4);
+    const std::size_t begin = headers + (json + 3) / 4 * 4;
+    set_number(file, begin, file.size() - begin - 8);
+    set_number(file, 8, file.size());
+  }
+  return file;
+}
+
 void remove_placeholders(const Placeholders& given, tinygltf::Model& file) {
   for (const int accessor : given.accessors) {
     if (static_cast<std::size_t>(accessor) < file.accessors.size()) {

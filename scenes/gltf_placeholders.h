@@ -24,6 +24,10 @@ struct Placeholders {
 /// Replaces the JSON text of a .glb file. The file must begin with a complete one.
 [[nodiscard]] std::string with_json(std::string_view glb, std::string json);
 
+/// A .glb file whose chunks end on multiples of 4 bytes, made from one whose chunks do not; empty if they do,
+/// and if the file is broken otherwise.
+[[nodiscard]] std::string with_padding(std::string_view glb);
+
 /// Removes the placeholders from the parsed file.
 void remove_placeholders(const Placeholders& given, tinygltf::Model& file);
 

@@ -50,6 +50,14 @@ LightKind kind_of(const Model& model, const std::string& type, const std::string
   return LightKind::spot;
 }
 
+/// tinygltf makes no difference between a range of 0 and none.
+bool has_range_of_0(const tinygltf::Model& file, int light) {
+  const auto found = file.extensions.find("KHR_lights_punctual");
+  return found != file.extensions.end() && found->second.IsObject() && found->second.Has("lights") &&
+         found->second.Get("lights").IsArray() &&
+         number_in(found->second.Get("lights").Get(light), "range") == 0.0;
+}
+
 Light convert_light(const Model& model, int index, const PlacedNode& place) {
   const tinygltf::Light& source =
       model.at(model.data().lights, index, "light", "node " + std::to_string(place.node));
@@ -122,7 +130,7 @@ Camera convert_camera(const Model& model, const PlacedNode& place, int index) {
 
 }  // namespace
 
-void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene& scene) {
+void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene& scene, LeftOut& left_out) {
   for (const PlacedNode& place : nodes) {
     const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(place.node)];
     const auto found = node.extensions.find("KHR_lights_punctual");
@@ -134,6 +142,11 @@ void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
       model.fail("node " + std::to_string(place.node) + ": its KHR_lights_punctual names no light");
     }
     scene.lights.push_back(convert_light(model, *index, place));
+    if (has_range_of_0(model.data(), *index)) {
+      left_out.replace("ranges of lights that are 0, by none", sim::shown(model.path().string()) +
+                                                                   ": light " + std::to_string(*index) +
+                                                                   ": its range is 0; it must be above that");
+    }
   }
 }
 

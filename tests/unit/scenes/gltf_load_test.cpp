@@ -254,15 +254,19 @@ TEST_F(GltfLoad, TexturesComeFromTheDecoder) {
   EXPECT_NE(refusal(file).find("no image decoder"), std::string::npos);
 
   file.json["images"][0] = {{"uri", "picture.png"}};
-  EXPECT_NE(refusal(file).find("picture.png"), std::string::npos);
+  FileOptions strict;
+  strict.strict = true;
+  EXPECT_NE(test::user_error_of([&] { static_cast<void>(load(file, strict, decoder)); }).find("picture.png"),
+            std::string::npos);
   testing::write_bytes(directory_.path() / "picture.png", "FILE");
   static_cast<void>(load(file, {}, decoder));
   EXPECT_EQ(seen, "FILEpicture.png");
   const ImageDecoder failing = [](std::span<const std::byte>, std::string_view) -> Texture {
     throw sim::UserError("not a picture");
   };
-  EXPECT_NE(test::user_error_of([&] { static_cast<void>(load(file, {}, failing)); }).find("not a picture"),
-            std::string::npos);
+  EXPECT_NE(
+      test::user_error_of([&] { static_cast<void>(load(file, strict, failing)); }).find("not a picture"),
+      std::string::npos);
 }
 
 TEST_F(GltfLoad, Lights) {

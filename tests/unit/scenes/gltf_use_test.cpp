@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/gltf.h"
+#include "scenes/open.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/scenes/gltf_file.h"
@@ -74,6 +75,7 @@ TEST_F(GltfUse, CountsWhatTheSceneDoesNotUse) {
   EXPECT_EQ(use.unread_bytes, 64U + 36U + 5U);
   FileOptions other;
   other.scene = "1";
+  other.strict = true;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(two_scenes(), other)); }).find("not a picture"),
             std::string::npos);
   EXPECT_TRUE(AnimatedScene(Scene{}).file_use().parts.empty());
@@ -84,8 +86,11 @@ TEST_F(GltfUse, ReadsWhatNobodyUsesWhenAsked) {
   FileOptions all;
   all.read_unused = true;
   GltfFile file = two_scenes();
+  all.strict = true;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(file, all)); }).find("not a picture"),
             std::string::npos);
+  all.strict = false;
+  EXPECT_NE(describe(open(file, all).at(0.0)).find("Replaced: 1 textures"), std::string::npos);
   file.json["images"][1]["bufferView"] = file.json["images"][0]["bufferView"];
   const FileUse use = open(file, all).file_use();
   EXPECT_EQ(use.unread_bytes, 64U + 36U + 3U) << "what nobody uses, whether it is read or not";
@@ -126,6 +131,7 @@ TEST_F(GltfUse, ImagesWaitForTheirDecoding) {
   waiting.size_only = [](std::span<const std::byte>, std::string_view) -> ImageSize {
     throw sim::UserError("no head");
   };
+  waiting.strict = true;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(open(file, waiting)); }).find("no head"),
             std::string::npos);
 }

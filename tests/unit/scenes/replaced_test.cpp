@@ -7,12 +7,14 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "gltf_file.h"
 #include "loaded_scene.h"
 #include "text_scene.h"
 
 namespace marti::scenes {
 namespace {
 
+using testing::GltfFile;
 using testing::has_note;
 
 /// Decodes nothing but images that begin with "A".
@@ -131,6 +133,152 @@ TEST(Replaced, EncodingsOfText) {
   }
   folder.write("a.mtl", "\xef\xbb\xbfnewmtl \xe4\nKd 1 0 0\n");
   EXPECT_EQ(folder.refusal("a.obj", "\xef\xbb\xbf" + text, strict), "no UserError");
+}
+
+GltfFile textured() {
+  GltfFile file = GltfFile::square();
+  const int coordinates = file.add_accessor(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
+  file.primitive()["attributes"]["TEXCOORD_0"] = coordinates;
+  file.primitive()["material"] = 0;
+  file.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  file.json["textures"] = {{{"source", 0}}};
+  file.json["images"] = {{{"bufferView", file.add_view(std::vector<char>{'A'})}, {"mimeType", "image/png"}}};
+  return file;
+}
+
+TEST(Replaced, OfGltf) {
+  const testing::SceneFolder folder;
+  std::vector<Kind> kinds;
+  const auto add = [&](GltfFile file, const std::function<void(GltfFile&)>& damage, const std::string& note,
+                       const std::string& refusal) {
+    damage(file);
+    kinds.push_back({file.glb(), note, refusal});
+  };
+  for (const char* extension :
+       {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_variants",
+        "KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_volume"}) {
+    add(textured(), testing::put("/extensionsRequired", {extension}),
+        std::string("1 required extensions ") + extension + ", by what the file has without it",
+        std::string("requires the extension \"") + extension);
+  }
+  const std::string no_image = "1 textures that are missing or cannot be decoded, by none";
+  add(textured(), testing::put("/images/0", {{"uri", "none.png"}}), no_image,
+      "missing, empty or cannot be read");
+  add(textured(), testing::put("/textures/0", nlohmann::json::object()), no_image,
+      "texture 0 refers to image -1");
+  add(
+      textured(),
+      [](GltfFile& file) { file.json["images"][0]["bufferView"] = file.add_view(std::vector<char>{'B'}); },
+      no_image, "it is no image");
+  add(
+      textured(),
+      [](GltfFile& file) {
+        file.json["samplers"] = {{{"wrapS", 12345}, {"wrapT", 10497}}};
+        file.json["textures"][0]["sampler"] = 0;
+      },
+      "1 wrap modes of textures that glTF does not have, by repeating", "no wrap mode 12345");
+  add(
+      textured(),
+      [](GltfFile& file) {
+        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 0}}};
+        file.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+      },
+      "1 ranges of lights that are 0, by none", "its range is 0");
+  const std::string twice =
+      "nodes that a scene lists twice or although they are children, by one in its place";
+  add(
+      textured(),
+      [](GltfFile& file) {
+        file.json["nodes"] = {
+            {{"children", {1}}, {"translation", {5, 0, 0}}}, {{"children", {2}}}, {{"mesh", 0}}};
+        file.json["scenes"][0]["nodes"] = {2, 0, 1};
+      },
+      "2 " + twice, "is listed in scene 0 twice");
+  add(textured(), testing::put("/scenes/0/nodes", {0, 0}), "1 " + twice, "is listed in scene 0 twice");
+  const std::string unpadded = "1 binary glTF files whose chunks do not end on multiples of 4 bytes";
+  for (int more = 1; more < 4; ++more) {
+    for (const bool binary : {false, true}) {
+      std::string bytes = textured().glb();
+      const auto lengthen = [&](std::size_t at) {
+        std::uint32_t length = 0;
+        std::memcpy(&length, bytes.data() + at, sizeof length);
+        length += static_cast<std::uint32_t>(more);
+        std::memcpy(bytes.data() + at, &length, sizeof length);
+        return length;
+      };
+      std::uint32_t json = 0;
+      std::memcpy(&json, bytes.data() + 12, sizeof json);
+      lengthen(8);
+      if (binary) {
+        lengthen(20 + json);
+        bytes.append(static_cast<std::size_t>(more), '\0');
+      } else {
+        lengthen(12);
+        bytes.insert(20 + json, static_cast<std::size_t>(more), ' ');
+      }
+      kinds.push_back({bytes, unpadded, "does not end on a multiple of 4 bytes"});
+    }
+  }
+  expect_replaced(folder, "a.glb", kinds);
+
+  // A node under its parent is placed by it; one whose parent the scene does not list is there all the same.
+  GltfFile file = GltfFile::square();
+  file.json["nodes"] = {{{"children", {1}}, {"translation", {5, 0, 0}}}, {{"mesh", 0}}};
+  file.json["scenes"][0]["nodes"] = {1, 0};
+  EXPECT_EQ(testing::corner(folder.open("a.glb", file.glb()), 0, 0), glm::dvec3(5, 0, 0));
+  file.json["scenes"][0]["nodes"] = {1};
+  EXPECT_EQ(testing::corner(folder.open("a.glb", file.glb()), 0, 0), glm::dvec3(0, 0, 0));
+}
+
+TEST(Replaced, ExtensionsOfTexturesAreRead) {
+  const testing::SceneFolder folder;
+  FileOptions strict;
+  strict.strict = true;
+  GltfFile webp = textured();
+  webp.json["extensionsRequired"] = {"EXT_texture_webp"};
+  webp.json["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  EXPECT_EQ(folder.open("a.glb", webp.glb(), strict, letters).textures.size(), 1U);
+
+  // Scaled by (2, 3), a quarter turn counter-clockwise as seen, moved: (u, v) becomes (3 v, -2 u) + offset.
+  GltfFile moved = textured();
+  moved.json["extensionsRequired"] = {"KHR_texture_transform"};
+  moved.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
+            ["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"rotation", 1.5707963267948966}, {"scale", {2, 3}}};
+  const Scene scene = folder.open("a.glb", moved.glb(), strict, letters);
+  ASSERT_EQ(scene.uvs.size(), 4U);
+  const std::array<glm::dvec2, 4> before = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(scene.uvs[i].x, 3.0 * before.at(i).y + 0.5, 1e-15);
+    EXPECT_NEAR(scene.uvs[i].y, -2.0 * before.at(i).x + 0.25, 1e-15);
+  }
+  auto& given = moved.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"];
+  given["KHR_texture_transform"]["texCoord"] = 3;
+  EXPECT_TRUE(has_note(folder.open("a.glb", moved.glb(), {}, letters), "without the texture coordinates"));
+  for (const nlohmann::json& wrong : {nlohmann::json{1}, nlohmann::json("x"), nlohmann::json{1, 2, 3},
+                                      nlohmann::json{1e300, 0}, nlohmann::json{"1", 0}}) {
+    given["KHR_texture_transform"] = {{"scale", wrong}};
+    EXPECT_NE(folder.refusal("a.glb", moved.glb(), {}, letters).find("its texture's transform"),
+              std::string::npos);
+  }
+}
+
+// Names and extras say nothing about a scene, whatever they are.
+TEST(Replaced, ExtrasAndNamesOfAnyKind) {
+  const testing::SceneFolder folder;
+  for (const nlohmann::json& any :
+       {nlohmann::json(1), nlohmann::json(nullptr), nlohmann::json(true), nlohmann::json::array({1, "a"}),
+        nlohmann::json("text"), nlohmann::json(1.5e300)}) {
+    GltfFile file = textured();
+    for (const char* place : {"", "/asset", "/scenes/0", "/nodes/0", "/meshes/0", "/meshes/0/primitives/0",
+                              "/materials/0", "/textures/0", "/images/0", "/accessors/0", "/bufferViews/0"}) {
+      file.json[nlohmann::json::json_pointer(place)]["extras"] = any;
+      if (std::string(place) != "") {
+        file.json[nlohmann::json::json_pointer(place)]["name"] = any;
+      }
+    }
+    EXPECT_EQ(folder.refusal("a.glb", file.glb(), {}, letters), "no UserError") << any;
+  }
 }
 
 }  // namespace
