@@ -36,7 +36,8 @@ class PlyReader {
       : file_(file),
         text_(file.read(1)),
         lines_(text_, sim::shown(file.path().string()), TextLines::Style::plain),
-        header_(read_ply_header(lines_, text_.size())),
+        left_out_{.strict = file.options().strict, .features = {}, .replaced = {}},
+        header_(read_ply_header(lines_, text_.size(), left_out_)),
         values_(text_, sim::shown(file.path().string()), header_.format, lines_),
         mesh_(file, scene_),
         memory_(file, "its geometry takes") {}
@@ -61,7 +62,7 @@ class PlyReader {
     }
     values_.finish();
     make_triangles();
-    mesh_.finish({});
+    mesh_.finish(left_out_);
     scene_.notes.insert(scene_.notes.end(), notes_.begin(), notes_.end());
     FileUse use;
     use.parts = {{"elements", header_.elements.size(), 2}, {"properties", properties_, properties_used_}};
@@ -81,7 +82,11 @@ class PlyReader {
   /// Reads a property of an entry that nothing is done with.
   void pass_over(const PlyProperty& property) {
     for (std::uint64_t left = property.count ? values_.length(property) : 1; left > 0; --left) {
-      static_cast<void>(values_.value(property.type));
+      if (left_out_.strict) {
+        static_cast<void>(values_.value(property.type));
+      } else {
+        values_.pass_over(property.type);
+      }
     }
   }
 
@@ -155,7 +160,9 @@ class PlyReader {
         if (places[p] == not_used) {
           pass_over(element.properties[p]);
         } else {
-          given[static_cast<std::size_t>(places[p])] = values_.value(element.properties[p].type);
+          const PlyType type = element.properties[p].type;
+          given[static_cast<std::size_t>(places[p])] =
+              places[p] < 3 ? values_.value(type) : values_.any_number(type, left_out_);
         }
       }
       values_.end();
@@ -233,6 +240,7 @@ class PlyReader {
   const SourceFile& file_;
   std::string text_;
   TextLines lines_;
+  LeftOut left_out_;
   PlyHeader header_;
   PlyValues values_;
   Scene scene_;

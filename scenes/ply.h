@@ -4,7 +4,9 @@
 // Read: the element "vertex" with x, y, z and, if it has them, nx, ny, nz; the element "face" with the list
 // vertex_indices or vertex_index, of any integer type, each a polygon (scenes/polygon_mesh.h). Elements and
 // properties may come in any order. All other properties, colours too, and other elements are left out with a
-// note. A PLY file has no materials: all is matt grey (0.8), as an OBJ file's faces without one.
+// note. Lines of the header that are no statement, and in text other types than PLY's and normals that are
+// not of theirs, are replaced and counted (docs/scenes.md, FileOptions::strict). A PLY file has no materials:
+// all is matt grey (0.8), as an OBJ file's faces without one.
 #pragma once
 
 #include <filesystem>

@@ -30,13 +30,20 @@ constexpr std::array<TypeName, 16> types = {{{"char", PlyType::i8},
                                              {"double", PlyType::f64},
                                              {"float64", PlyType::f64}}};
 
-PlyType type_of(const TextLines& lines, std::size_t word) {
+/// In text the numbers of a type that PLY does not have can be read; in binary nobody knows their bytes.
+PlyType type_of(const TextLines& lines, std::size_t word, const std::optional<PlyFormat>& format,
+                LeftOut& left_out) {
   const auto* const found = std::find_if(
       types.begin(), types.end(), [&](const TypeName& type) { return type.name == lines.words()[word]; });
-  if (found == types.end()) {
-    lines.fail(in_quotes(lines.words()[word]) + " is no type of PLY");
+  if (found != types.end()) {
+    return found->type;
   }
-  return found->type;
+  const std::string reason = in_quotes(lines.words()[word]) + " is no type of PLY";
+  if (format != PlyFormat::ascii) {
+    lines.fail(reason);
+  }
+  left_out.replace("types of properties that PLY does not have, by double", lines.refusal(reason));
+  return PlyType::f64;
 }
 
 void need_words(const TextLines& lines, std::size_t count, const char* form) {
@@ -77,21 +84,22 @@ PlyElement element_of(const TextLines& lines, const PlyHeader& header, std::size
   return element;
 }
 
-PlyProperty property_of(const TextLines& lines, const PlyHeader& header) {
+PlyProperty property_of(const TextLines& lines, const PlyHeader& header,
+                        const std::optional<PlyFormat>& format, LeftOut& left_out) {
   if (header.elements.empty()) {
     lines.fail("a property before the first element");
   }
   PlyProperty property;
   if (lines.words().size() > 1 && lines.words()[1] == "list") {
     need_words(lines, 5, "property list TYPE TYPE NAME");
-    property.count = type_of(lines, 2);
+    property.count = type_of(lines, 2, format, left_out);
     if (!is_integer(*property.count)) {
       lines.fail("the length of a list must be of an integer type, not " + in_quotes(lines.words()[2]));
     }
   } else {
     need_words(lines, 3, "property TYPE NAME");
   }
-  property.type = type_of(lines, lines.words().size() - 2);
+  property.type = type_of(lines, lines.words().size() - 2, format, left_out);
   property.name = lines.words().back();
   if (header.elements.back().find(property.name)) {
     lines.fail("the property " + in_quotes(property.name) + " is declared a second time");
@@ -121,7 +129,7 @@ std::optional<std::size_t> PlyElement::find(std::string_view property) const {
                                    : std::optional(static_cast<std::size_t>(found - properties.begin()));
 }
 
-PlyHeader read_ply_header(TextLines& lines, std::size_t size) {
+PlyHeader read_ply_header(TextLines& lines, std::size_t size, LeftOut& left_out) {
   constexpr std::size_t most_declarations = 1000;
   if (!lines.next() || lines.words().size() != 1 || lines.words()[0] != "ply" || lines.line() != 1) {
     lines.fail("it does not begin with the line 'ply'");
@@ -154,10 +162,11 @@ PlyHeader read_ply_header(TextLines& lines, std::size_t size) {
       require_properties(lines, header);
       header.elements.push_back(element_of(lines, header, size));
     } else if (word == "property") {
-      PlyProperty property = property_of(lines, header);
+      PlyProperty property = property_of(lines, header, format, left_out);
       header.elements.back().properties.push_back(std::move(property));
     } else {
-      lines.fail(in_quotes(word) + " is no statement of a PLY header");
+      left_out.replace("lines of the header that are no statement of PLY, by none",
+                       lines.refusal(in_quotes(word) + " is no statement of a PLY header"));
     }
   }
   lines.fail("the file ends before the line 'end_header'");

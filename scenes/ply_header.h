@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene_notes.h"
 #include "scenes/text_lines.h"
 
 namespace marti::scenes {
@@ -39,7 +40,8 @@ struct PlyHeader {
 };
 
 /// Reads up to the line end_header. Throws UserError with file and line. Counts are as declared, but no
-/// larger than the `size` of the file allows.
-[[nodiscard]] PlyHeader read_ply_header(TextLines& lines, std::size_t size);
+/// larger than the `size` of the file allows. Lines that are no statement, and in text types that PLY does
+/// not have, are replaced (`left_out`).
+[[nodiscard]] PlyHeader read_ply_header(TextLines& lines, std::size_t size, LeftOut& left_out);
 
 }  // namespace marti::scenes

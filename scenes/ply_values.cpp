@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/parse_number.h"
 
 namespace marti::scenes {
 
@@ -71,6 +72,29 @@ void PlyValues::begin(const PlyElement& element, std::uint64_t entry) {
 
 double PlyValues::value(PlyType type) {
   return format_ == PlyFormat::ascii ? value_of_word(type) : value_of_bytes(type);
+}
+
+double PlyValues::any_number(PlyType type, LeftOut& left_out) {
+  if (format_ == PlyFormat::ascii && is_integer(type) && word_ < lines_.words().size()) {
+    const std::string_view word = lines_.words()[word_];
+    const auto whole = sim::parse_number<std::int64_t>(word);
+    const auto number = sim::parse_number<double>(word);
+    if (number && !(whole && holds(type, *whole))) {
+      left_out.replace("normals' coordinates that are not of their property's type, by the numbers given",
+                       lines_.refusal(in_quotes(word) + " is no whole number of its type"));
+      ++word_;
+      return *number;
+    }
+  }
+  return value(type);
+}
+
+void PlyValues::pass_over(PlyType type) {
+  if (format_ == PlyFormat::ascii && word_ < lines_.words().size()) {
+    ++word_;
+  } else {
+    static_cast<void>(value(type));
+  }
 }
 
 double PlyValues::value_of_word(PlyType type) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scenes/ply_header.h"
+#include "scenes/scene_notes.h"
 #include "scenes/text_lines.h"
 
 namespace marti::scenes {
@@ -22,6 +23,10 @@ class PlyValues {
   void begin(const PlyElement& element, std::uint64_t entry);
   /// The next value as it is in the file: of a float in a text, the nearest float.
   [[nodiscard]] double value(PlyType type);
+  /// As value(), but a number in a text that is not of its integer type is taken as it is, and counted.
+  [[nodiscard]] double any_number(PlyType type, LeftOut& left_out);
+  /// Passes over the next value. In a text it may be any word.
+  void pass_over(PlyType type);
   /// The next value as the length of a list of such values.
   [[nodiscard]] std::uint64_t length(const PlyProperty& list);
   /// Ends an entry. Throws UserError when its line has more values.

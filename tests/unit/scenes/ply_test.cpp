@@ -171,8 +171,10 @@ TEST(PlyHostile, EveryFaultOfAHeaderIsRefusedWithItsLine) {
        "must be of an integer type, not 'float'"},
       {"ply\nformat ascii 1.0\nelement a 1\nproperty list int \x1b[1m x\n", 4, "'\\u001b[1m' is no type"}};
   const SceneFolder folder;
+  FileOptions strict;
+  strict.strict = true;
   for (const Fault& fault : faults) {
-    const std::string message = folder.refusal("a.ply", fault.text);
+    const std::string message = folder.refusal("a.ply", fault.text, strict);
     EXPECT_EQ(message.rfind("a.ply:" + std::to_string(fault.line) + ": ", 0), 0U) << fault.text << message;
     EXPECT_NE(message.find(fault.reason), std::string::npos) << fault.text << message;
     EXPECT_EQ(sim::shown(message, sim::all_shown), message);

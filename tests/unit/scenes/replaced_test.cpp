@@ -281,5 +281,36 @@ TEST(Replaced, ExtrasAndNamesOfAnyKind) {
   }
 }
 
+TEST(Replaced, OfPly) {
+  const testing::SceneFolder folder;
+  const auto ply = [](const std::string& header, const std::string& property, const std::string& value) {
+    std::string text = "ply\nformat ascii 1.0\n" + header +
+                       "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n" + property +
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const char* vertex : {"0 0 0 ", "1 0 0 ", "1 1 0 ", "0 1 0 "}) {
+      text += vertex + value + "\n";
+    }
+    return text + "4 0 1 2 3\n";
+  };
+  const std::string normals = "property char nx\nproperty char ny\nproperty char nz\n";
+  expect_replaced(
+      folder, "a.ply",
+      {{ply("exported by somebody\nTextureFile a.png\n", "", ""),
+        "2 lines of the header that are no statement of PLY, by none",
+        "a.ply:3: 'exported' is no statement of a PLY header"},
+       {ply("", "property half quality\n", "0.5"), "1 types of properties that PLY does not have",
+        "'half' is no type of PLY"},
+       {ply("", normals, "0.6 0 0.8"), "8 normals' coordinates that are not of their property's type",
+        "'0.6' is no whole number"}});
+  EXPECT_LT(
+      glm::length(folder.open("a.ply", ply("", normals, "0.6 0 0.8")).normals[0] - glm::dvec3(0.6, 0, 0.8)),
+      1e-15);
+  FileOptions strict;
+  strict.strict = true;
+  const std::string colours = ply("", "property uchar red\n", "0.5");
+  EXPECT_TRUE(has_note(folder.open("a.ply", colours), "1 properties of the element 'vertex': red"));
+  EXPECT_NE(folder.refusal("a.ply", colours, strict).find("'0.5' is no whole number"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace marti::scenes
