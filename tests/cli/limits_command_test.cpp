@@ -51,9 +51,8 @@ TEST_F(Limits, SceneAndLogAreRefused) {
 
 TEST_F(Limits, APlanIsRefusedBeforeItsPointsAreRead) {
   write(file(),
-        "[host_machine]\nmemory_limit = \"64 MiB\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = 1000, "
-        "steps = 1000 }\n"
-        "host.latency_cycles = { from = 1, to = 1000, steps = 1000 }\n");
+        "[host_machine]\nmemory_limit = \"64 MiB\"\n[sweep.axes]\nmachine.nodes = \"1..1000\"\n"
+        "host.latency_cycles = \"1..1000\"\n");
   const Outcome outcome = marti("sweep " + quoted(file()) + " --plan");
   EXPECT_EQ(outcome.status, 2) << outcome.output;
   EXPECT_TRUE(says(outcome, "the plan of 1000000 points takes about"));

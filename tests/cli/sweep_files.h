@@ -37,7 +37,7 @@ height = 32
 preset = "unit"
 [sweep.axes]
 image.max_depth = [1, 2]
-machine.nodes = { from = 1, to = 40, steps = 40 }
+machine.nodes = "1..40"
 cache.size = ["1 KiB", "2 KiB", "4 KiB", "8 KiB"]
 )";
 

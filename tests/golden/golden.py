@@ -58,7 +58,7 @@ def axes_of(config):
     """The keys of all axes of a configuration's [sweep], as section.key."""
     def flat(table, prefix=""):
         for key, value in table.items():
-            if isinstance(value, dict) and not {"from", "to"} <= value.keys():
+            if isinstance(value, dict):
                 yield from flat(value, prefix + key + ".")
             else:
                 yield prefix + key

@@ -1,235 +1,303 @@
 #include "studies/sweep/plan/axis_values.h"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 
 #include "sim/config_errors.h"
+#include "sim/error.h"
+#include "sim/key_value.h"
 #include "sim/nearest.h"
+#include "sim/parse_number.h"
+#include "sim/rounded.h"
 #include "sim/shown.h"
+#include "sim/trim.h"
 #include "studies/sweep/plan/sweep_table.h"
 
 namespace marti::studies::sweep {
 
 namespace {
 
-using sim::DocumentEntry;
 using sim::DocumentValue;
 
-struct Range {
-  sim::Value from;
-  sim::Value to;
-  std::int64_t steps = 0;
-  bool logarithmic = false;
-  int line = 0;
-};
+bool is_number(const sim::Key& key) {
+  return key.type != sim::ValueType::text && key.type != sim::ValueType::choice &&
+         key.type != sim::ValueType::boolean;
+}
 
-class RangeReader {
+// Values and ranges in a text. `place` begins its messages.
+class TextReader {
  public:
-  RangeReader(const sim::Config& config, std::size_t key, const DocumentValue& value)
-      : config_(config), index_(key), key_(config.schema().keys()[key]), value_(value) {}
+  TextReader(const sim::Key& key, std::string place) : key_(key), place_(std::move(place)) {}
 
-  Range read() const {
-    for (const DocumentEntry& entry : *value_.table()) {
-      const std::vector<std::string> parts = {"from", "to", "steps", "scale"};
-      if (std::ranges::find(parts, entry.name) == parts.end()) {
-        fail(entry.line, "a range has from, to, steps and scale, not \"" + sim::shown(entry.name) + "\"" +
-                             sim::did_you_mean(entry.name, parts));
+  std::vector<sim::Value> read(std::string_view rest) {
+    for (bool more = true; more;) {
+      const bool quoted = sim::trim(rest).starts_with('"');
+      const std::string part =
+          quoted ? take_quoted(rest) : std::string(sim::trim(rest.substr(0, rest.find(','))));
+      if (quoted) {
+        add(value_of(part));
+      } else {
+        add_part(part);
       }
+      const std::size_t comma = rest.find(',');
+      more = comma != std::string_view::npos;
+      rest = more ? rest.substr(comma + 1) : rest;
     }
-    if (!whole() && !real()) {
-      fail(value_.line, "only numbers have ranges; write a list of values in brackets");
-    }
-    Range range{end("from"), end("to"), steps(), logarithmic(), value_.line};
-    if (range.steps == 1 && range.from != range.to) {
-      fail(part("steps").line, "one step cannot reach from \"from\" to \"to\"");
-    }
-    if (range.logarithmic) {
-      for (const char* name : {"from", "to"}) {
-        const sim::Value& at = name == std::string_view("from") ? range.from : range.to;
-        if (!(whole() ? std::get<std::int64_t>(at) > 0 : std::get<double>(at) > 0.0)) {
-          fail(part(name).line, "a logarithmic range must lie above 0");
-        }
-      }
-    }
-    return range;
+    return std::move(values_);
   }
 
  private:
-  [[noreturn]] void fail(int line, const std::string& message) const {
-    sim::fail_at(config_, line, key_.name, message);
-  }
-  [[nodiscard]] bool whole() const {
-    return key_.type == sim::ValueType::integer || key_.type == sim::ValueType::size ||
-           key_.type == sim::ValueType::duration;
-  }
-  [[nodiscard]] bool real() const {
-    return key_.type == sim::ValueType::real || key_.type == sim::ValueType::frequency ||
-           key_.type == sim::ValueType::percentage;
-  }
-  [[nodiscard]] const DocumentEntry& part(std::string_view name) const {
-    const DocumentEntry* entry = sim::find(*value_.table(), name);
-    if (entry == nullptr) {
-      fail(value_.line,
-           "the range lacks \"" + std::string(name) + "\"; as { from = ..., to = ..., steps = 5 }");
+  [[noreturn]] void fail(const std::string& message) const { throw sim::UserError(place_ + ": " + message); }
+
+  // A value in quotation marks, in which two stand for one, as in CSV: it may hold commas. Leaves what
+  // follows it.
+  std::string take_quoted(std::string_view& rest) const {
+    std::string value;
+    for (std::size_t at = rest.find('"') + 1; at < rest.size(); ++at) {
+      if (rest[at] != '"') {
+        value += rest[at];
+      } else if (at + 1 < rest.size() && rest[at + 1] == '"') {
+        value += rest[++at];
+      } else {
+        rest = sim::trim(rest.substr(at + 1));
+        if (!rest.empty() && rest.front() != ',') {
+          fail("after a value in quotation marks comes a comma, not " + sim::shown(rest));
+        }
+        return value;
+      }
     }
-    return *entry;
+    fail("a quotation mark is not closed");
   }
-  [[nodiscard]] sim::Value end(const std::string& name) const {
-    return config_.parse(index_, part(name).value, key_.name + "." + name).front();
-  }
-  [[nodiscard]] std::int64_t steps() const {
-    const DocumentEntry& entry = part("steps");
-    const std::int64_t* steps = std::get_if<std::int64_t>(&entry.value.content);
-    if (steps == nullptr || *steps < 1 || *steps > most_sweep_steps) {
-      fail(entry.line, "steps must be an integer from 1 to " + std::to_string(most_sweep_steps) + ", not " +
-                           describe(entry.value));
+
+  // A number or truth as such, so that a key of another type refuses it as it would in a file.
+  [[nodiscard]] sim::DocumentValue document_of(std::string_view text) const {
+    if (key_.type != sim::ValueType::text && key_.type != sim::ValueType::choice) {
+      if (const std::optional<std::int64_t> whole = sim::parse_number<std::int64_t>(text)) {
+        return {*whole, 0};
+      }
+      if (const std::optional<double> real = sim::parse_number<double>(text); real && std::isfinite(*real)) {
+        return {*real, 0};
+      }
+      if (text == "true" || text == "false") {
+        return {text == "true", 0};
+      }
     }
-    return *steps;
+    return {std::string(text), 0};
   }
-  [[nodiscard]] bool logarithmic() const {
-    const DocumentEntry* entry = sim::find(*value_.table(), "scale");
-    if (entry == nullptr) {
-      return false;
+
+  [[nodiscard]] sim::Value value_of(std::string_view text) const {
+    if (text.empty()) {
+      fail("a value is missing; it must be " + sim::expected_of(key_));
     }
-    const std::string* text = entry->value.text();
-    if (text == nullptr || (*text != "linear" && *text != "log")) {
-      fail(entry->line, "scale must be \"linear\" or \"log\", not " + describe(entry->value));
+    return sim::read_values(key_, document_of(text), place_).front();
+  }
+
+  void add_part(std::string_view part) {
+    const bool number = key_.type != sim::ValueType::text && key_.type != sim::ValueType::choice &&
+                        key_.type != sim::ValueType::boolean;
+    const std::size_t dots = number ? part.find("..") : std::string_view::npos;
+    if (dots == std::string_view::npos) {
+      add(value_of(part));
+      return;
     }
-    return *text == "log";
-  }
-
-  const sim::Config& config_;
-  std::size_t index_;
-  const sim::Key& key_;
-  const DocumentValue& value_;
-};
-
-// Whole numbers, and whether each was one before rounding.
-struct Whole {
-  std::int64_t value = 0;
-  bool exact = true;
-};
-
-Whole linear_step(std::int64_t from, std::int64_t to, std::uint64_t i, std::uint64_t gaps) {
-  const bool up = to >= from;
-  const std::uint64_t distance = up ? static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from)
-                                    : static_cast<std::uint64_t>(from) - static_cast<std::uint64_t>(to);
-  const std::uint64_t rest = distance % gaps * i;  // gaps are few: this fits
-  const std::uint64_t way = distance / gaps * i + (rest + gaps / 2) / gaps;
-  const std::uint64_t start = static_cast<std::uint64_t>(from);
-  return {static_cast<std::int64_t>(up ? start + way : start - way), rest % gaps == 0};
-}
-
-Whole log_step(std::int64_t from, std::int64_t to, std::uint64_t i, std::uint64_t gaps) {
-  const auto a = static_cast<std::uint64_t>(from);
-  const auto b = static_cast<std::uint64_t>(to);
-  if (i == 0 || i == gaps) {
-    return {i == 0 ? from : to, true};
-  }
-  if (std::has_single_bit(a) && std::has_single_bit(b)) {
-    const int first = std::countr_zero(a);
-    const int way = (std::countr_zero(b) - first) * static_cast<int>(i);
-    if (way % static_cast<int>(gaps) == 0) {
-      return {std::int64_t{1} << (first + way / static_cast<int>(gaps)), true};
+    const std::string_view from = sim::trim(part.substr(0, dots));
+    std::string_view to = part.substr(dots + 2);
+    std::size_t sign = to.find_last_of("*+");
+    // The sign of an exponent, as in 1e+6, belongs to the number.
+    while (sign != std::string_view::npos && sign > 0 && to[sign] == '+' &&
+           (to[sign - 1] == 'e' || to[sign - 1] == 'E')) {
+      sign = to.find_last_of("*+", sign - 1);
     }
-  }
-  const long double share = static_cast<long double>(i) / static_cast<long double>(gaps);
-  const long double exact = static_cast<long double>(from) *
-                            std::pow(static_cast<long double>(to) / static_cast<long double>(from), share);
-  const long double nearest = std::round(exact);
-  return {static_cast<std::int64_t>(nearest), std::abs(exact - nearest) <= 1e-12L * exact};
-}
-
-double real_step(double from, double to, bool logarithmic, std::uint64_t i, std::uint64_t gaps) {
-  if (i == 0 || i == gaps) {
-    return i == 0 ? from : to;
-  }
-  const double share = static_cast<double>(i) / static_cast<double>(gaps);
-  return logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share)) : std::lerp(from, to, share);
-}
-
-std::vector<sim::Value> steps_of(const Range& range, bool& rounded) {
-  std::vector<sim::Value> values;
-  const auto gaps = static_cast<std::uint64_t>(range.steps > 1 ? range.steps - 1 : 1);
-  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(range.steps); ++i) {
-    if (const auto* from = std::get_if<std::int64_t>(&range.from)) {
-      const std::int64_t to = std::get<std::int64_t>(range.to);
-      const Whole step = range.logarithmic ? log_step(*from, to, i, gaps) : linear_step(*from, to, i, gaps);
-      rounded = rounded || !step.exact;
-      values.emplace_back(step.value);
+    const bool stepped = sign != std::string_view::npos;
+    const char how = stepped ? to[sign] : ' ';
+    const std::string_view step = stepped ? sim::trim(to.substr(sign + 1)) : std::string_view();
+    to = sim::trim(to.substr(0, stepped ? sign : to.size()));
+    const sim::Value first = value_of(from);
+    const sim::Value last = value_of(to);
+    if (const auto* whole = std::get_if<std::int64_t>(&first)) {
+      add_range(*whole, std::get<std::int64_t>(last), how, step);
     } else {
-      values.emplace_back(
-          real_step(std::get<double>(range.from), std::get<double>(range.to), range.logarithmic, i, gaps));
+      add_range(std::get<double>(first), std::get<double>(last), how, step);
     }
   }
-  return values;
-}
 
-std::vector<sim::Setting> range_values(const sim::Config& config, std::size_t index,
-                                       const DocumentValue& value, std::vector<std::string>& notes) {
-  const sim::Key& key = config.schema().keys()[index];
-  if (key.is_list) {
-    sim::fail_at(config, value.line, key.name, "each value is a list itself; only numbers have ranges");
+  // The step of an arithmetic range, which is a value of the key but need not lie in its range.
+  template <class Number>
+  [[nodiscard]] Number addend_of(std::string_view text) const {
+    sim::Key key = key_;
+    key.minimum = std::nullopt;
+    key.maximum = std::nullopt;
+    const sim::Value value = sim::read_values(key, document_of(text), place_).front();
+    return std::get<Number>(value);
   }
-  const Range range = RangeReader(config, index, value).read();
-  bool rounded = false;
-  std::vector<sim::Setting> settings;
-  for (sim::Value& step : steps_of(range, rounded)) {
-    // Steps ascend or descend, so equal ones are neighbours.
-    if (settings.empty() || settings.back().values.front() != step) {
-      settings.push_back({index, {std::move(step)}, range.line, {}});
+
+  template <class Number>
+  void add_range(Number from, Number to, char how, std::string_view step) {
+    if (!(from < to)) {
+      fail("a range goes up: its second value must be above its first");
+    }
+    if (how == ' ' && key_.type != sim::ValueType::integer) {
+      fail("the range lacks its step, such as *2 or +STEP after it");
+    }
+    if (how != ' ' && step.empty()) {
+      fail("the range lacks the number after its " + std::string(1, how));
+    }
+    if (how == '*') {
+      const std::optional<double> factor = sim::parse_number<double>(step);
+      if (!factor || !(*factor > 1.0) || !std::isfinite(*factor) || !(from > Number(0))) {
+        fail("a range by factors begins above 0, and its factor is a number above 1");
+      }
+      add_steps<Number>(from, to, [&](std::int64_t i) {
+        return static_cast<long double>(from) *
+               std::pow(static_cast<long double>(*factor), static_cast<long double>(i));
+      });
+    } else {
+      const Number addend = how == ' ' ? Number(1) : addend_of<Number>(step);
+      if (!(addend > Number(0))) {
+        fail("the step of a range must be above 0");
+      }
+      add_steps<Number>(from, to, [&](std::int64_t i) {
+        return static_cast<long double>(from) +
+               static_cast<long double>(addend) * static_cast<long double>(i);
+      });
     }
   }
-  const std::string place = sim::place_in_file(config.name(), range.line, key.name) + ": ";
-  if (rounded) {
-    notes.push_back(place + "the steps of the range are rounded to whole numbers");
+
+  // Adds step(0), which is `from`, step(1), ... as long as they are not above `to`. Of reals, a value that
+  // only rounding keeps from being `to` is `to`.
+  template <class Number, class Step>
+  void add_steps(Number from, Number to, const Step& step) {
+    const auto end = static_cast<long double>(to);
+    for (std::int64_t i = 0;; ++i) {
+      const long double value = step(i);
+      if constexpr (std::is_integral_v<Number>) {
+        if (std::round(value) > end) {
+          return;
+        }
+        const auto whole = static_cast<Number>(std::round(value));
+        if (i > 0 && std::round(step(i - 1)) == std::round(value)) {
+          fail("the step of the range is too small: two of its values are equal");
+        }
+        add(sim::Value(whole));
+      } else {
+        const bool there = std::abs(value - end) <= 1e-12L * std::abs(end);
+        if (value > end && !there) {
+          return;
+        }
+        // 0.1..0.7+0.1 has 0.3, not 0.30000000000000004.
+        constexpr int digits = 15;
+        const Number decimal = i > 0 ? sim::rounded(static_cast<Number>(value), digits) : from;
+        add(sim::Value(there ? to : decimal));
+      }
+    }
   }
-  if (settings.size() < static_cast<std::size_t>(range.steps)) {
-    notes.push_back(place + "of " + std::to_string(range.steps) + " steps " +
-                    std::to_string(settings.size()) + " differ; the others are left out");
+
+  void add(sim::Value value) {
+    if (values_.size() == static_cast<std::size_t>(most_sweep_steps)) {
+      fail("an axis has at most " + std::to_string(most_sweep_steps) + " values");
+    }
+    values_.push_back(std::move(value));
   }
-  return settings;
+
+  const sim::Key& key_;
+  std::string place_;
+  std::vector<sim::Value> values_;
+};
+
+// Throws for a value that comes twice.
+void refuse_repeats(const sim::Key& key, const std::vector<sim::Setting>& settings,
+                    const std::function<void(const sim::Setting&, const std::string&)>& fail) {
+  std::unordered_set<std::string> seen;
+  for (const sim::Setting& setting : settings) {
+    const std::string printed = print_values(key, setting.values);
+    if (!seen.insert(printed).second) {
+      fail(setting, "lists " + sim::shown(printed) + " twice");
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key, const DocumentValue& value,
-                                      bool repeats, std::vector<std::string>& notes) {
-  if (value.table() != nullptr) {
-    return range_values(config, key, value, notes);
+AxisArgument read_axis_argument(const sim::Config& config, const std::string& argument) {
+  const std::string place = "--axis " + sim::shown(argument);
+  const auto fail = [&](const std::string& message) { throw sim::UserError(place + ": " + message); };
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    fail("must have the form KEY=VALUE,VALUE,...");
   }
+  const std::string name(sim::trim(std::string_view(argument).substr(0, equals)));
+  const sim::Schema& schema = config.schema();
+  const std::optional<std::size_t> found = schema.find(name);
+  if (!found) {
+    fail("unknown key" + sim::did_you_mean(name, schema.names()) + "; `marti config` lists all keys");
+  }
+  const sim::Key& key = schema.keys()[*found];
+  if (key.is_list) {
+    fail("each value of this key is a list itself; give them in [sweep.axes] of the file");
+  }
+  AxisArgument axis{*found, {}};
+  for (sim::Value& value : TextReader(key, place).read(std::string_view(argument).substr(equals + 1))) {
+    axis.steps.push_back({*found, {std::move(value)}, 0, "--axis " + argument});
+  }
+  refuse_repeats(key, axis.steps,
+                 [&](const sim::Setting& /*setting*/, const std::string& message) { fail(message); });
+  return axis;
+}
+
+std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key, const DocumentValue& value,
+                                      bool repeats) {
   const sim::Key& declared = config.schema().keys()[key];
   const auto fail = [&](int line, const std::string& message) {
     sim::fail_at(config, line, declared.name, message);
   };
-  const DocumentValue::List* list = value.list();
-  if (list == nullptr) {
-    fail(value.line,
-         "an axis is a list of values in brackets or { from = ..., to = ..., steps = ... }, not " +
-             describe(value));
-  }
-  if (list->empty()) {
-    fail(value.line, "the list of its values is empty");
-  }
-  if (list->size() > static_cast<std::size_t>(most_sweep_steps)) {
-    fail(value.line, "an axis has at most " + std::to_string(most_sweep_steps) + " values, not " +
-                         std::to_string(list->size()));
-  }
+  const bool ranges = is_number(declared) && !declared.is_list;
+  // A single value is no axis by itself.
+  const auto lists_values = [&](const std::string* text) {
+    return ranges && text != nullptr &&
+           (text->find("..") != std::string::npos || text->find(',') != std::string::npos);
+  };
   std::vector<sim::Setting> settings;
-  std::unordered_set<std::string> seen;
-  for (const DocumentValue& element : *list) {
-    sim::Setting setting{key, config.parse(key, element), element.line, {}};
-    const std::string printed = print_values(declared, setting.values);
-    if (!repeats && !seen.insert(printed).second) {
-      fail(element.line, "lists " + sim::shown(printed) + " twice");
+  const auto add_text = [&](const std::string& text, int line) {
+    const std::string place = sim::place_in_file(config.name(), line, declared.name);
+    for (sim::Value& each : TextReader(declared, place).read(text)) {
+      settings.push_back({key, {std::move(each)}, line, {}});
     }
-    settings.push_back(std::move(setting));
+  };
+  if (const DocumentValue::List* const list = value.list(); list != nullptr) {
+    if (list->empty()) {
+      fail(value.line, "the list of its values is empty");
+    }
+    for (const DocumentValue& element : *list) {
+      const std::string* const text = element.text();
+      if (lists_values(text)) {
+        add_text(*text, element.line);
+      } else {
+        settings.push_back({key, config.parse(key, element), element.line, {}});
+      }
+    }
+  } else if (const std::string* const text = value.text(); lists_values(text)) {
+    add_text(*text, value.line);
+  } else if (value.table() != nullptr) {
+    fail(value.line, "a range is a text, as \"4 KiB..64 KiB*2\" by factors or \"1..9+2\" by steps");
+  } else {
+    fail(value.line, (ranges ? "an axis is a list of values in brackets or a range such as \"1..16*2\", not "
+                             : "an axis is a list of values in brackets, not ") +
+                         describe(value));
+  }
+  if (settings.size() > static_cast<std::size_t>(most_sweep_steps)) {
+    fail(value.line, "an axis has at most " + std::to_string(most_sweep_steps) + " values, not " +
+                         std::to_string(settings.size()));
+  }
+  if (!repeats) {
+    refuse_repeats(declared, settings, [&](const sim::Setting& setting, const std::string& message) {
+      fail(setting.line, message);
+    });
   }
   return settings;
 }

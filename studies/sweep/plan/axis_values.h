@@ -1,4 +1,4 @@
-// The values of one key along an axis: a list, or a range.
+// The values of one key along an axis, in a file and on the command line.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,23 @@
 
 namespace marti::studies::sweep {
 
-/// The settings that `value` lists for the key of this index: a list of values, or a range
-/// `{ from = ..., to = ..., steps = ..., scale = "linear" | "log" }`, whose ends are exact. The steps of
-/// whole numbers (integers, bytes, ticks) are rounded to the nearest, halves away from `from`; a logarithmic
-/// range whose ends are powers of two and whose steps fit gives exact powers. Values that rounding makes
-/// equal are left out, and `notes` says so. `repeats`: a list may hold a value twice. Throws UserError naming
-/// file, line and key.
+/// The values of one key.
+struct AxisArgument {
+  std::size_t key = 0;  ///< index into the schema
+  std::vector<sim::Setting> steps;
+};
+
+/// Reads "KEY=VALUE,VALUE,...", of which each part may be a range of numbers: "1..8" goes up by 1 (integers
+/// only), "1..9+2" by 2, "4KiB..64KiB*2" by factors of 2, from the first value to the last that is not above
+/// the second. A value in quotation marks may hold commas; two quotation marks in it are one, as in CSV.
+/// Throws UserError that begins with "--axis ARGUMENT: " for an unknown key, a wrong or repeated value, a
+/// range that is empty, does not go up or has more than most_sweep_steps values.
+[[nodiscard]] AxisArgument read_axis_argument(const sim::Config& config, const std::string& argument);
+
+/// The settings of an axis in a file, for the key of this index: a text as read_axis_argument() has it after
+/// its "=", for keys of numbers, or a list whose elements are values or such texts. `repeats`: a value may
+/// come twice. Throws UserError naming file, line and key.
 [[nodiscard]] std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key,
-                                                    const sim::DocumentValue& value, bool repeats,
-                                                    std::vector<std::string>& notes);
+                                                    const sim::DocumentValue& value, bool repeats);
 
 }  // namespace marti::studies::sweep

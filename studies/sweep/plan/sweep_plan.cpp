@@ -64,7 +64,6 @@ class Planner {
   SweepPlan plan() {
     plan_.file = config_.name();
     plan_.prices = keys::read_given_prices(config_);
-    plan_.notes = table_.notes;
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();

@@ -10,7 +10,6 @@
 #include "sim/config_errors.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
-#include "studies/sweep/plan/axis_argument.h"
 #include "studies/sweep/plan/axis_values.h"
 
 namespace marti::studies::sweep {
@@ -89,7 +88,7 @@ class TableReader {
         }
         enter(key, values.line);
         SweepAxis axis{SweepAxis::Kind::list, values.line, {key}, {}, {}};
-        for (sim::Setting& step : axis_values(config_, key, values.value, false, table_.notes)) {
+        for (sim::Setting& step : axis_values(config_, key, values.value, false)) {
           axis.steps.push_back({std::move(step)});
         }
         table_.axes.push_back(std::move(axis));
@@ -194,7 +193,7 @@ class TableReader {
     SweepAxis axis{SweepAxis::Kind::zip, line, {}, {}, {}};
     for_each_key(zip, "sweep.zip", "", [&](std::size_t key, const DocumentEntry& values) {
       enter(key, values.line);
-      std::vector<sim::Setting> steps = axis_values(config_, key, values.value, true, table_.notes);
+      std::vector<sim::Setting> steps = axis_values(config_, key, values.value, true);
       if (!axis.keys.empty() && steps.size() != axis.steps.size()) {
         const std::string& first = config_.schema().names()[axis.keys.front()];
         fail(values.line, config_.schema().names()[key],

@@ -31,10 +31,9 @@ struct SweepTable {
   std::vector<SweepAxis> axes;                       ///< named points first, then in the order of the file
   std::vector<sim::Setting> base;                    ///< of [sweep.base]; empty: one node
   std::optional<std::vector<sim::Setting>> compare;  ///< of [sweep.compare]
-  std::vector<std::string> notes;                    ///< what a range had to be rounded to
 };
 
-/// Reads what the free section "sweep" holds, and the axes of the command line (axis_argument.h), which come
+/// Reads what the free section "sweep" holds, and the axes of the command line (axis_values.h), which come
 /// first and replace axes of the file over their keys. Throws UserError naming file, line and key: for an
 /// unknown or repeated key, one that no sweep may change, a wrong value, an empty axis, too many points, and
 /// where there is no axis at all.

@@ -89,12 +89,10 @@ TEST(MemoryEstimates, OfMachinesAreNotTooLow) {
 }
 
 sim::Config sweep_of(const std::string& nodes, const std::string& latencies) {
-  return sim::Config::from_text(
-      sweep_schema(),
-      "scene.source = \"teapot:2\"\n[sweep.axes]\nmachine.nodes = { from = 1, to = " + nodes +
-          ", steps = " + nodes + " }\nhost.latency_cycles = { from = 1, to = " + latencies +
-          ", steps = " + latencies + " }\n",
-      "sweep.toml");
+  return sim::Config::from_text(sweep_schema(),
+                                "scene.source = \"teapot:2\"\n[sweep.axes]\nmachine.nodes = \"1.." + nodes +
+                                    "\"\nhost.latency_cycles = \"1.." + latencies + "\"\n",
+                                "sweep.toml");
 }
 
 // Plans of 20,000 points with a machine each.

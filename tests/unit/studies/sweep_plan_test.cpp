@@ -426,11 +426,10 @@ RC_GTEST_PROP(SweepPlan, SurvivesAnyParts, ()) {
        "[sweep]\nzip = []\n", "[sweep]\npoints = []\n", "[sweep]\naxes = {}\n"},
       {"", "[sweep.axes]\n"},
       {"", "machine.nodes = [1, 2]\n", "machine.nodes = []\n", "machine.nodes = 3\n",
-       "machine.nodes = { from = -9223372036854775808, to = 9223372036854775807, steps = 3 }\n",
-       "machine.nodes = { from = 1, to = 16777216, steps = 40, scale = \"log\" }\n"},
-      {"", "cache.size = { from = \"1 KiB\", to = \"64 KiB\", steps = 7 }\n",
-       "cache = { ways = [1], size = [64] }\n", "cache = {}\n", "cache.ways = [[1]]\n",
-       "cache.organisation = [\"none\", \"unified\"]\n"},
+       "machine.nodes = \"-9223372036854775808..9223372036854775807*3\"\n",
+       "machine.nodes = \"1..16777216*1.5\"\n"},
+      {"", "cache.size = \"1 KiB..64 KiB*2\"\n", "cache = { ways = [1], size = [64] }\n", "cache = {}\n",
+       "cache.ways = [[1]]\n", "cache.organisation = [\"none\", \"unified\"]\n"},
       {"", "[sweep.axes.node]\nclock = [\"33 MHz\"]\n", "[sweep.axes.node]\nclock = [\"33 mHz\"]\n",
        "[sweep.axes.count]\nsharing = [true, false]\n"},
       {"", "[[sweep.zip]]\n", "[[sweep.zip]]\ncache.line = [16, 32]\nmemory.banks = [1, 2]\n",
@@ -462,7 +461,7 @@ RC_GTEST_PROP(SweepPlan, SurvivesAnyParts, ()) {
 
 TEST(SweepPlan, IsDescribed) {
   const SweepPlan plan = plan_of(
-      "[sweep.axes]\nmachine.nodes = { from = 2, to = 20, steps = 10 }\n[[sweep.zip]]\ncache.ways = [1, 2]\n"
+      "[sweep.axes]\nmachine.nodes = \"2..20+2\"\n[[sweep.zip]]\ncache.ways = [1, 2]\n"
       "cache.size = [\"1 KiB\", \"2 KiB\"]\n[sweep]\nfilter = \"machine.nodes <> 6\"\n");
   SweepOutlook outlook;
   outlook.machines_done = 3;

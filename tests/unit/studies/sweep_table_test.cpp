@@ -2,9 +2,6 @@
 #include "studies/sweep/plan/sweep_table.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
-#include <cmath>
 
 #include "studies/sweep/plan/sweep_points.h"
 #include "tests/support/user_error.h"
@@ -36,81 +33,15 @@ std::vector<std::int64_t> numbers(const SweepTable& table) {
 
 using Numbers = std::vector<std::int64_t>;
 
-TEST(SweepTable, RangesOfPowersOfTwoAreExact) {
-  const SweepTable table =
-      table_of("sweep.axes.cache.size = { from = \"4 KiB\", to = \"1 MiB\", steps = 9, scale = \"log\" }");
-  EXPECT_EQ(numbers(table), (Numbers{4096, 8192, 16384, 32768, 65536, 131072, 262144, 524288, 1048576}));
-  EXPECT_TRUE(table.notes.empty());
-  EXPECT_EQ(numbers(table_of(
-                "[sweep.axes]\n\"machine.nodes\" = { from = 64, to = 1, steps = 4, scale = \"log\" }")),
-            (Numbers{64, 16, 4, 1}));
-  EXPECT_EQ(
-      numbers(table_of("sweep.axes.node.write_buffer = { from = 1, to = 1000, steps = 4, scale = \"log\" }")),
-      (Numbers{1, 10, 100, 1000}));
-}
-
-TEST(SweepTable, RoundedRangesSaySo) {
-  const SweepTable rounded = table_of("sweep.axes.machine.nodes = { from = 1, to = 10, steps = 5 }");
-  EXPECT_EQ(numbers(rounded), (Numbers{1, 3, 6, 8, 10}));
-  ASSERT_EQ(rounded.notes.size(), 1U);
-  EXPECT_EQ(rounded.notes[0], "s.toml:1: machine.nodes: the steps of the range are rounded to whole numbers");
-  const SweepTable fewer = table_of("sweep.axes.machine.nodes = { from = 1, to = 3, steps = 10 }");
-  EXPECT_EQ(numbers(fewer), (Numbers{1, 2, 3}));
-  ASSERT_EQ(fewer.notes.size(), 2U);
-  EXPECT_EQ(fewer.notes[1], "s.toml:1: machine.nodes: of 10 steps 3 differ; the others are left out");
-  EXPECT_EQ(numbers(table_of("sweep.axes.machine.nodes = { from = 7, to = 7, steps = 1 }")), (Numbers{7}));
-}
-
-// Against the definition, in wide arithmetic.
-RC_GTEST_PROP(SweepTable, LinearStepsAreTheNearestWholeNumbers, ()) {
-  const auto from = *rc::gen::inRange<std::int64_t>(1, 100'000);
-  const auto to = *rc::gen::inRange<std::int64_t>(1, 100'000);
-  const auto steps = *rc::gen::inRange<std::int64_t>(2, 40);
-  const SweepTable table =
-      table_of("sweep.axes.machine.nodes = { from = " + std::to_string(from) +
-               ", to = " + std::to_string(to) + ", steps = " + std::to_string(steps) + " }");
-  Numbers expected;
-  for (std::int64_t i = 0; i < steps; ++i) {
-    const long double exact = static_cast<long double>(from) + static_cast<long double>(to - from) *
-                                                                   static_cast<long double>(i) /
-                                                                   static_cast<long double>(steps - 1);
-    // Halves go away from `from`.
-    const auto value =
-        static_cast<std::int64_t>(to >= from ? std::floor(exact + 0.5L) : std::ceil(exact - 0.5L));
-    if (expected.empty() || expected.back() != value) {
-      expected.push_back(value);
-    }
-  }
-  RC_ASSERT(numbers(table) == expected);
-}
-
-RC_GTEST_PROP(SweepTable, LogarithmicStepsHaveEqualRatios, ()) {
-  const auto from = *rc::gen::inRange<std::int64_t>(1000, 1'000'000);
-  const auto to = *rc::gen::inRange<std::int64_t>(1000, 1'000'000);
-  const auto steps = *rc::gen::inRange<std::int64_t>(2, 9);
-  RC_PRE(std::abs(std::log2(static_cast<double>(to) / static_cast<double>(from))) > 0.1);
-  const Numbers found = numbers(table_of("sweep.axes.cache.size = { from = " + std::to_string(from) +
-                                         ", to = " + std::to_string(to) +
-                                         ", steps = " + std::to_string(steps) + ", scale = \"log\" }"));
-  RC_ASSERT(found.size() == static_cast<std::size_t>(steps));
-  RC_ASSERT(found.front() == from);
-  RC_ASSERT(found.back() == to);
-  const double ratio =
-      std::log(static_cast<double>(to) / static_cast<double>(from)) / static_cast<double>(steps - 1);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const double exact = static_cast<double>(from) * std::exp(ratio * static_cast<double>(i));
-    RC_ASSERT(std::abs(static_cast<double>(found[i]) - exact) <= 0.5 + 1e-9 * exact);
-  }
-}
-
-TEST(SweepTable, RealRangesKeepTheirEnds) {
-  const SweepTable table = table_of(
-      "sweep.axes.node.clock = { from = \"33.3 MHz\", to = \"100.1 MHz\", steps = 3, scale = \"log\" }");
-  ASSERT_EQ(table.axes[0].steps.size(), 3U);
-  const auto real = [&](std::size_t i) { return std::get<double>(table.axes[0].steps[i][0].values[0]); };
-  EXPECT_EQ(real(0), 33.3e6);
-  EXPECT_NEAR(real(1), std::sqrt(33.3e6 * 100.1e6), 1.0);
-  EXPECT_EQ(real(2), 100.1e6);
+// A range means in a file what it means on the command line (axis_values_test.cpp).
+TEST(SweepTable, AnAxisMayHoldRanges) {
+  EXPECT_EQ(numbers(table_of("sweep.axes.cache.size = \"4 KiB..64 KiB*2\"")),
+            (Numbers{4096, 8192, 16384, 32768, 65536}));
+  EXPECT_EQ(numbers(table_of("sweep.axes.machine.nodes = \"1..3, 8, 16..20+2\"")),
+            (Numbers{1, 2, 3, 8, 16, 18, 20}));
+  EXPECT_EQ(numbers(table_of("sweep.axes.machine.nodes = [64, \"1..3\", 8]")), (Numbers{64, 1, 2, 3, 8}));
+  EXPECT_EQ(numbers(table_of("[[sweep.zip]]\nmachine.nodes = \"1..16*4\"\ncache.ways = [1, 1, 1]\n")),
+            (Numbers{1, 4, 16}));
 }
 
 TEST(SweepTable, AxesComeInTheOrderOfTheFileAfterTheNamedPoints) {
@@ -187,24 +118,15 @@ TEST(SweepTable, WrongInputIsNamedWithFileLineAndKey) {
       {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.base]\n", "s.toml:3: sweep.base: gives nothing"},
       {"[sweep.axes]\nmachine.nodes = [1]\n[sweep.compare]\nmachine.nodes = [1]\n",
        "s.toml:4: machine.nodes: must be an integer, not a list"},
-      {"[sweep.axes]\ncache.size = { from = 1, to = 2 }\n",
-       "s.toml:2: cache.size: the range lacks \"steps\""},
-      {"[sweep.axes]\ncache.size = { from = 1, to = 2, step = 2 }\n",
-       "s.toml:2: cache.size: a range has from, to, steps and scale, not \"step\" (did you mean "
-       "\"steps\"?)"},
-      {"[sweep.axes]\ncache.size = { from = 1, to = 2, steps = 100001 }\n",
-       "s.toml:2: cache.size: steps must be an integer from 1 to 100000, not the integer 100001"},
-      {"[sweep.axes]\ncache.size = { from = 1, to = 2, steps = 1 }\n", "s.toml:2: cache.size: one step"},
-      {"[sweep.axes]\ncache.size = { from = 0, to = 2, steps = 2 }\n",
-       "s.toml:2: cache.size.from: must be 1 B"},
-      {"[sweep.axes]\ncache.ways = { from = 0, to = 2, steps = 2, scale = \"log\" }\n",
-       "s.toml:2: cache.ways: a logarithmic range must lie above 0"},
-      {"[sweep.axes]\ncache.ways = { from = 0, to = 2, steps = 2, scale = \"lin\" }\n",
-       "s.toml:2: cache.ways: scale must be \"linear\" or \"log\", not the text \"lin\""},
-      {"[sweep.axes]\nscene.source = { from = 0, to = 2, steps = 2 }\n",
-       "s.toml:2: scene.source: only numbers have ranges"},
-      {"[sweep.axes]\nmachine.nodes = { from = 1, to = 2000, steps = 2000 }\n"
-       "cache.size = { from = 1, to = 2000, steps = 2000 }\n",
+      {"[sweep.axes]\ncache.size = { from = 1, to = 2, steps = 2 }\n",
+       "s.toml:2: cache.size: a range is a text, as \"4 KiB..64 KiB*2\" by factors"},
+      {"[sweep.axes]\ncache.size = \"4 KiB..8 KiB\"\n", "s.toml:2: cache.size: the range lacks its step"},
+      {"[sweep.axes]\ncache.ways = [1,\n\"2..1\"]\n", "s.toml:3: cache.ways: a range goes up"},
+      {"[sweep.axes]\ncache.ways = [2, \"1..3\"]\n", "s.toml:2: cache.ways: lists 2 twice"},
+      {"[sweep.axes]\ncache.ways = \"0..2*2\"\n", "s.toml:2: cache.ways: a range by factors begins above 0"},
+      {"[sweep.axes]\nscene.source = \"teapot:1..3\"\n",
+       "s.toml:2: scene.source: an axis is a list of values in brackets, not the text"},
+      {"[sweep.axes]\nmachine.nodes = \"1..2000\"\nhost.latency_cycles = \"1..2000\"\n",
        "s.toml:3: sweep: the axes up to this line make 4000000 points; a sweep has at most 1000000"},
   };
   test::expect_messages(wrong, error_of);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "studies/sweep/plan/axis_argument.h"
+#include "studies/sweep/plan/axis_values.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_table.h"
 #include "tests/support/user_error.h"
