@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <utility>
 
 // toml++ 3.3 asserts that a name begins at a position before it checks that ("[#" is a header without a
 // name); without assertions some compilers are told to assume it. The checks of toml++ that follow refuse
@@ -172,7 +173,10 @@ FaultyLine line_of(std::string_view text, std::size_t line, std::size_t column) 
   if (end == begin && whole.starts_with('[')) {
     end += std::min(whole.find(']'), whole.size());
   }
-  return {trim(whole.substr(0, whole.find('#')), " \t\r"), name_at(text, end)};
+  std::string name = name_at(text, end);
+  // Of a byte that is no character toml++ knows the line only.
+  name = name.empty() ? name_at(text, begin + whole.size()) : name;
+  return {trim(whole.substr(0, whole.find('#')), " \t\r"), std::move(name)};
 }
 
 /// The correction to suggest where a text lacks its quotation marks, the commonest fault; empty for other

@@ -227,6 +227,7 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
   EXPECT_EQ(run.frame.log->texture_begin, (std::vector<std::uint64_t>{0, 256, 512}));
   // Kept, the image is decoded, and found to be broken.
   frame.keep.keep(PlanItem::textures);
+  frame.open.file.size_first = size_of_image;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(run_functional(frame)); }).find("cannot be decoded"),
             std::string::npos);
   // With a whole image there, nothing else differs. It is another one: equal images are one texture.
