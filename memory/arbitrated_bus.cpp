@@ -109,7 +109,7 @@ void ArbitratedBus::grant() {
 void ArbitratedBus::take(Ticks asked, Ticks length) {
   const Ticks now = site_.engine.now();
   free_at_ = add_ticks(now, length);
-  statistics_.busy = add_ticks(statistics_.busy, length);
+  statistics_.busy += length;
   statistics_.waits.add(now - asked);
 }
 

@@ -71,7 +71,7 @@ class Bus final : public Banked {
 [[gnu::always_inline]] inline sim::Ticks Bus::take(sim::Ticks arrival, sim::Ticks length) {
   const sim::Ticks start = link_.begin(arrival);
   link_.hold_until(sim::add_ticks(start, length));
-  statistics_.busy = sim::add_ticks(statistics_.busy, length);
+  statistics_.busy += length;
   statistics_.waits.add(start - arrival);
   return start;
 }

@@ -27,7 +27,7 @@ DramService DramInOrder::serve(const DramRequest& request) {
   }
   service.end = device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, last_column_);
   statistics_.count_moved(request.write, request.bursts, burst_bytes_, burst_time_);
-  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last_column_ - request.arrival));
+  statistics_.queued += period_ * (last_column_ - request.arrival);
   return service;
 }
 

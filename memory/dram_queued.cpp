@@ -231,7 +231,7 @@ void DramQueued::count_start(DramCycle arrival, DramCommand command, DramCycle c
 }
 
 void DramQueued::count_queued(DramCycle arrival, DramCycle last) {
-  statistics_.queued = sim::add_ticks(statistics_.queued, period_ * (last - arrival));
+  statistics_.queued += period_ * (last - arrival);
 }
 
 std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& pick) {

@@ -22,7 +22,7 @@ struct DramStatistics {
   std::int64_t bytes = 0;
   sim::Ticks data_busy = 0;
   sim::Ticks refresh_stall = 0;
-  sim::Ticks queued = 0;
+  sim::Sum queued = 0;
 
   /// Counts bursts that move their data, each so many bytes in so much time of the data bus.
   void count_moved(bool write, std::int64_t bursts, std::uint32_t burst_bytes, sim::Ticks burst_time) {

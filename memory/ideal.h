@@ -22,7 +22,7 @@ class Ideal final : public Interconnect {
   void count_reads(std::int64_t reads, std::int64_t bytes) override {
     statistics_.reads += reads;
     statistics_.bytes += bytes;
-    statistics_.busy = sim::add_ticks(statistics_.busy, sim::multiply_ticks(latency_, reads));
+    statistics_.busy += sim::Sum{latency_} * reads;
     statistics_.waits.add_unwaited(reads);
   }
   void write(const Transaction& transaction) override {
@@ -37,7 +37,7 @@ class Ideal final : public Interconnect {
  private:
   void count(const Transaction& transaction) {
     statistics_.bytes += transaction.bytes;
-    statistics_.busy = sim::add_ticks(statistics_.busy, latency_);
+    statistics_.busy += latency_;
     statistics_.waits.add(0);
   }
 

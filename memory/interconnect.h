@@ -83,7 +83,7 @@ struct InterconnectStatistics {
   std::int64_t writes = 0;
   std::int64_t bytes = 0;
   std::int64_t links = 0;
-  sim::Ticks busy = 0;
+  sim::Sum busy = 0;
   WaitStatistics waits;
 
   static constexpr auto counters() {

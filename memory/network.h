@@ -50,7 +50,7 @@ struct NetworkStatistics {
   std::int64_t hops = 0;
   std::int64_t link_bytes = 0;
   std::int64_t links = 0;
-  sim::Ticks busy = 0;
+  sim::Sum busy = 0;
   WaitStatistics waits;  ///< one for each message, the sum over its links
 
   static constexpr auto counters() {

@@ -10,13 +10,13 @@ namespace marti::memory {
 
 struct WaitStatistics {
   std::int64_t count = 0;
-  sim::Ticks sum = 0;  ///< equals the queue length integrated over time (Little's law as an identity)
+  sim::Sum sum = 0;  ///< equals the queue length integrated over time (Little's law as an identity)
   sim::Ticks max = 0;
   sim::LogHistogram histogram;
 
   [[gnu::always_inline]] void add(sim::Ticks wait) {
     ++count;
-    sum = sim::add_ticks(sum, wait);
+    sum += wait;
     histogram.add(wait);
     max = histogram.maximum();
   }

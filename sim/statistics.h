@@ -1,5 +1,6 @@
-// Declared statistics. A component counts in a plain struct of int64 members and declares each member
-// once, with name, unit and description, in a static constexpr function counters(). Ratios are never stored.
+// Declared statistics. A component counts in a plain struct of members of 64 bits, or of 128 bits for times
+// of many that run at the same time, and declares each member once, with name, unit and description, in a
+// static constexpr function counters(). Ratios are never stored.
 //
 //   struct CacheCounters {
 //     std::int64_t hits = 0;
@@ -24,9 +25,11 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/time.h"
 
 namespace marti::sim {
 
@@ -45,12 +48,34 @@ enum class Better : std::uint8_t {
 /// One declared counter. `unit` is "1" for a plain count, else "byte", "ps", "ps2", "cycle", ...
 template <class S>
 struct Counter {
+  constexpr Counter(std::string_view name_, std::string_view unit_, std::string_view description_,
+                    std::int64_t S::*member_, MergeRule rule_ = MergeRule::sum,
+                    Better better_ = Better::lower)
+      : name(name_), unit(unit_), description(description_), member(member_), rule(rule_), better(better_) {}
+  constexpr Counter(std::string_view name_, std::string_view unit_, std::string_view description_,
+                    Sum S::*sum_)
+      : name(name_), unit(unit_), description(description_), sum(sum_) {}
+
   std::string_view name;
   std::string_view unit;
   std::string_view description;
-  std::int64_t S::*member;
+  std::int64_t S::*member = nullptr;
+  Sum S::*sum = nullptr;  ///< instead of `member`, of a time that may not fit in 64 bits when it is added up
   MergeRule rule = MergeRule::sum;
   Better better = Better::lower;
+
+  [[nodiscard]] constexpr Sum value(const S& statistics) const {
+    return sum != nullptr ? statistics.*sum : Sum{statistics.*member};
+  }
+  /// An InternalError when the value does not fit.
+  constexpr void set(S& statistics, Sum value) const {
+    if (sum != nullptr) {
+      statistics.*sum = value;
+    } else {
+      ensure(value == static_cast<std::int64_t>(value), "a counter overflowed");
+      statistics.*member = static_cast<std::int64_t>(value);
+    }
+  }
 };
 
 /// numerator / denominator; std::nullopt when the denominator is zero.
@@ -72,36 +97,70 @@ constexpr bool declares_every_member() {
   constexpr auto table = S::counters();
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (table[i].member == table[j].member || table[i].name == table[j].name) {
+      if ((table[i].member == table[j].member && table[i].sum == table[j].sum) ||
+          table[i].name == table[j].name) {
         return false;
       }
     }
   }
-  return sizeof(S) == table.size() * sizeof(std::int64_t);
+  std::size_t bytes = 0;
+  for (const auto& counter : table) {
+    bytes += counter.sum != nullptr ? sizeof(Sum) : sizeof(std::int64_t);
+  }
+  return sizeof(S) == (bytes + alignof(S) - 1) / alignof(S) * alignof(S);
 }
 
-/// Calls visit(const Counter<S>&, std::int64_t value) for each counter in the order of declaration.
+template <HasCounters S>
+constexpr bool has_sums() {
+  constexpr auto table = S::counters();
+  return std::ranges::any_of(table, [](const auto& counter) { return counter.sum != nullptr; });
+}
+
+/// Calls visit(const Counter<S>&, value) for each counter in the order of declaration. Values are Sum where
+/// the struct has one, else std::int64_t.
 template <HasCounters S, class Visitor>
 void for_each_counter(const S& statistics, Visitor&& visit) {
+  using Value = std::conditional_t<has_sums<S>(), Sum, std::int64_t>;
   constexpr auto table = S::counters();
   for (const auto& counter : table) {
-    visit(counter, statistics.*counter.member);
+    visit(counter, static_cast<Value>(counter.value(statistics)));
   }
 }
 
-/// Adds `from` to `into`. A sum that does not fit in 64 bits is an InternalError.
+/// Adds `from` to `into`. A count that does not fit in 64 bits is an InternalError.
 template <HasCounters S>
 void merge(S& into, const S& from) {
   constexpr auto table = S::counters();
   for (const auto& counter : table) {
-    std::int64_t& value = into.*counter.member;
-    if (counter.rule == MergeRule::maximum) {
-      value = std::max(value, from.*counter.member);
-    } else {
-      ensure(!__builtin_add_overflow(value, from.*counter.member, &value), "a counter overflowed");
-    }
+    const Sum here = counter.value(into);
+    const Sum more = counter.value(from);
+    counter.set(into, counter.rule == MergeRule::maximum ? std::max(here, more) : here + more);
   }
 }
+
+/// The counters of many components of a kind, added up without a limit.
+template <HasCounters S>
+class Sums {
+ public:
+  void merge(const S& part) {
+    std::size_t i = 0;
+    for_each_counter(part, [&](const Counter<S>& counter, Sum value) {
+      Sum& all = values_[i++];
+      all = counter.rule == MergeRule::maximum ? std::max(all, value) : all + value;
+    });
+  }
+  /// Calls visit(const Counter<S>&, Sum value) for each counter in the order of declaration.
+  template <class Visitor>
+  void for_each(Visitor&& visit) const {
+    constexpr auto table = S::counters();
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      visit(table[i], values_[i]);
+    }
+  }
+
+ private:
+  std::array<Sum, S::counters().size()> values_{};
+};
 
 /// Count, sum, sum of squares and extremes of int64 samples, all exact: 128 bits hold the sum and 192 the
 /// sum of squares of any 2^63 samples. Mean and variance are rounded once, at the end; running means in

@@ -12,6 +12,9 @@ namespace marti::sim {
 /// One tick is one picosecond.
 using Ticks = std::int64_t;
 
+/// A time added up over many that run at the same time, in ticks: 2^32 of them of 2^63 ticks are 2^95.
+using Sum = __int128;
+
 inline constexpr Ticks ticks_per_second = 1'000'000'000'000;
 
 [[noreturn]] void fail_time_overflow();
@@ -32,6 +35,15 @@ inline Ticks multiply_ticks(Ticks a, std::int64_t b) {
     fail_time_overflow();
   }
   return product;
+}
+
+/// The sum as a time, or a UserError when it does not fit in 64 bits.
+inline Ticks ticks_of(Sum sum) {
+  const auto ticks = static_cast<Ticks>(sum);
+  if (ticks != sum) [[unlikely]] {
+    fail_time_overflow();
+  }
+  return ticks;
 }
 
 /// A component's clock. The frequency is rounded once to a period of whole ticks; every duration of the

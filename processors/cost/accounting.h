@@ -67,6 +67,8 @@ template <class OfActivity>
 }
 
 using TimeDivision = std::array<sim::Ticks, activities>;
+/// Of many nodes together.
+using TimeSums = std::array<sim::Sum, activities>;
 
 /// How many of each kind of step a node took.
 struct StepCounts {

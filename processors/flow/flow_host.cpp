@@ -55,7 +55,7 @@ SentSample FlowHost::send(std::uint32_t cluster, sim::Ticks now) {
   }
   way.ready_at = sim::add_ticks(now, occupancy_);
   ++statistics_.requests;
-  statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);
+  statistics_.busy += occupancy_;
   return sample;
 }
 

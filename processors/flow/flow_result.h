@@ -22,7 +22,7 @@ struct FlowCounts {
   std::int64_t bytes_sent = 0;
   std::int64_t longest_queue = 0;
   std::int64_t most_set_aside = 0;
-  sim::Ticks queued = 0;
+  sim::Sum queued = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<FlowCounts>;

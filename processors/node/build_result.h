@@ -100,7 +100,7 @@ static_assert(sim::declares_every_member<BuildLevel>());
 struct BuildResult {
   machine::Sharing sharing = machine::Sharing::given;
   sim::Ticks start_up = 0;         ///< when the initial trees are built and the host starts; within the frame
-  sim::Ticks start_up_wait = 0;    ///< sum over all nodes of their waits for it; part of their dispatch_wait
+  sim::Sum start_up_wait = 0;      ///< sum over all nodes of their waits for it; part of their dispatch_wait
   std::int64_t databases = 0;      ///< copies of the initial tree
   std::int64_t trees = 0;          ///< copies of the tree below the initial one
   std::vector<BuildLevel> levels;  ///< levels[i] is level i + 1; empty when the tree is given

@@ -127,7 +127,7 @@ class BuildingNodes : public Base {
     for (const std::uint32_t node : order_) {
       const sim::Ticks wait = start_up_ - cursors_[node].time;
       spend(node, cost::Activity::dispatch_wait, wait);
-      start_up_wait_ = sim::add_ticks(start_up_wait_, wait);
+      start_up_wait_ += wait;
       const sim::Ticks from = std::exchange(cursors_[node].time, start_up_);
       watch(node, walk::NodeState::dispatch_wait, from, false);
       derived().ask_first(node, start_up_);
@@ -283,7 +283,7 @@ class BuildingNodes : public Base {
   std::uint32_t builders_left_ = 0;
   bool begun_ = false;
   sim::Ticks start_up_ = 0;
-  sim::Ticks start_up_wait_ = 0;
+  sim::Sum start_up_wait_ = 0;
 };
 
 }  // namespace marti::processors::node

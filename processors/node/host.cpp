@@ -40,7 +40,7 @@ std::optional<Grant> Host::next(std::uint32_t node, sim::Ticks now) {
   count_step(meter_);
   const sim::Ticks begin = std::max(now, free_at_);
   free_at_ = sim::add_ticks(begin, occupancy_);
-  statistics_.busy = sim::add_ticks(statistics_.busy, occupancy_);
+  statistics_.busy += occupancy_;
   return Grant{handed_out_++, sim::add_ticks(begin, latency_)};
 }
 

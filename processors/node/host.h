@@ -22,7 +22,7 @@ struct Grant {
 
 struct HostStatistics {
   std::int64_t requests = 0;  ///< by dynamic assignment, those that found no packet left included
-  sim::Ticks busy = 0;
+  sim::Sum busy = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<HostStatistics>;

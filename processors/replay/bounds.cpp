@@ -98,7 +98,7 @@ sim::Ticks FrameBounds::least() const { return std::max({node_work, interconnect
 
 FrameBounds frame_bounds(const machine::MachineConfig& config, const MachineResult& result) {
   FrameBounds bounds;
-  sim::Ticks all = 0;
+  sim::Sum all = 0;
   sim::Ticks workers = 0;
   for (std::uint32_t node = 0; node < result.nodes.size(); ++node) {
     const sim::Ticks work = own_work(result.nodes[node]);
@@ -106,10 +106,10 @@ FrameBounds frame_bounds(const machine::MachineConfig& config, const MachineResu
       bounds.node_work = work;
       bounds.busiest_node = node;
     }
-    all = sim::add_ticks(all, work);
+    all += work;
     workers += had_work(result.nodes[node]) ? 1 : 0;
   }
-  bounds.mean_work = workers > 0 ? all / workers : 0;
+  bounds.mean_work = workers > 0 ? static_cast<sim::Ticks>(all / workers) : 0;
   // Between two accesses a bank is busy for its busy time; the last access ends with its data instead. A
   // distributed memory is busy for exactly as long as its accesses take, and DRAM for as long as it moves
   // data.
@@ -120,8 +120,7 @@ FrameBounds frame_bounds(const machine::MachineConfig& config, const MachineResu
   for (const ClusterResult& cluster : result.clusters) {
     if (node::has_links(config) && cluster.interconnect.links > 0) {
       const std::int64_t links = cluster.interconnect.links;
-      const sim::Ticks each =
-          cluster.interconnect.busy / links + (cluster.interconnect.busy % links != 0 ? 1 : 0);
+      const auto each = static_cast<sim::Ticks>((cluster.interconnect.busy + links - 1) / links);
       bounds.interconnect = std::max(bounds.interconnect, each);
     }
     for (const memory::BankStatistics& bank : cluster.banks) {

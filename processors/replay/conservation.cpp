@@ -10,7 +10,8 @@ namespace marti::processors::replay {
 
 namespace {
 
-sim::Ticks part(const cost::TimeDivision& time, cost::Activity activity) {
+template <class Division>
+auto part(const Division& time, cost::Activity activity) {
   return time[static_cast<std::size_t>(activity)];
 }
 
@@ -80,18 +81,17 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
 
   std::int64_t reads = 0;
   std::int64_t writes = 0;
-  sim::Ticks interconnect_waits = 0;
-  sim::Ticks bank_waits = 0;
+  sim::Sum interconnect_waits = 0;
+  sim::Sum bank_waits = 0;
   for (const ClusterResult& cluster : result.clusters) {
     const memory::InterconnectStatistics& traffic = cluster.interconnect;
     reads += traffic.reads;
     writes += traffic.writes;
-    // Several may wait at the same time, so the sum of waits may overflow although the frame time does not.
-    interconnect_waits = sim::add_ticks(interconnect_waits, traffic.waits.sum);
-    walk::require(!node::has_links(config) || traffic.busy <= sim::multiply_ticks(result.end, traffic.links),
+    interconnect_waits += traffic.waits.sum;
+    walk::require(!node::has_links(config) || traffic.busy <= sim::Sum{result.end} * traffic.links,
                   "links are not busy for longer than the frame");
     for (const memory::BankStatistics& bank : cluster.banks) {
-      bank_waits = sim::add_ticks(bank_waits, bank.waits.sum);
+      bank_waits += bank.waits.sum;
     }
     check_distributed(cluster);
     check_dram(cluster);
@@ -115,9 +115,9 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
   walk::require(writes == steps.pixels + built.writes,
                 "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but the nodes do not.
-  const cost::TimeDivision time = result.time();
+  const cost::TimeSums time = result.time();
   for (const memory::WaitStatistics& waits : result.l2.waits) {
-    bank_waits = sim::add_ticks(bank_waits, waits.sum);
+    bank_waits += waits.sum;
   }
   walk::require(part(time, cost::Activity::interconnect_wait) <= interconnect_waits,
                 "nodes wait for the interconnect no longer than its transactions do");

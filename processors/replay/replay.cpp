@@ -86,11 +86,11 @@ cost::ReferenceCounts MachineResult::references() const {
   return sum;
 }
 
-cost::TimeDivision MachineResult::time() const {
-  cost::TimeDivision sum{};
+cost::TimeSums MachineResult::time() const {
+  cost::TimeSums sum{};
   for (const cost::NodeStatistics& node : nodes) {
     for (std::size_t i = 0; i < cost::activities; ++i) {
-      sum[i] = sim::add_ticks(sum[i], node.time[i]);
+      sum[i] += node.time[i];
     }
   }
   return sum;

@@ -72,7 +72,7 @@ struct MachineResult {
 
   [[nodiscard]] cost::StepCounts steps() const;
   [[nodiscard]] cost::ReferenceCounts references() const;
-  [[nodiscard]] cost::TimeDivision time() const;
+  [[nodiscard]] cost::TimeSums time() const;
 };
 
 struct ReplayOptions {

@@ -16,10 +16,10 @@ AttributionCounts& Attribution::at(memory::RecordKind record, Origin origin) {
 
 void Attribution::wait(memory::RecordKind record, Origin origin, const memory::Service& service) {
   AttributionCounts& counts = at(record, origin);
-  counts.interconnect_wait = sim::add_ticks(counts.interconnect_wait, service.wait_interconnect);
-  counts.transfer = sim::add_ticks(counts.transfer, service.transfer);
-  counts.bank_wait = sim::add_ticks(counts.bank_wait, service.wait_bank);
-  counts.bank_access = sim::add_ticks(counts.bank_access, service.bank);
+  counts.interconnect_wait += service.wait_interconnect;
+  counts.transfer += service.transfer;
+  counts.bank_wait += service.wait_bank;
+  counts.bank_access += service.bank;
 }
 
 std::vector<AttributionRow> Attribution::rows() const {

@@ -41,12 +41,12 @@ struct AttributionCounts {
   std::int64_t references = 0;
   std::int64_t misses = 0;
   std::int64_t second_level_hits = 0;
-  std::int64_t interconnect_wait = 0;
-  std::int64_t transfer = 0;
-  std::int64_t bank_wait = 0;
-  std::int64_t bank_access = 0;
+  sim::Sum interconnect_wait = 0;
+  sim::Sum transfer = 0;
+  sim::Sum bank_wait = 0;
+  sim::Sum bank_access = 0;
 
-  [[nodiscard]] std::int64_t waited() const { return interconnect_wait + transfer + bank_wait + bank_access; }
+  [[nodiscard]] sim::Sum waited() const { return interconnect_wait + transfer + bank_wait + bank_access; }
 
   static constexpr auto counters() {
     using C = sim::Counter<AttributionCounts>;

@@ -117,7 +117,7 @@ CacheCountResult CacheCounting::result() const {
 }
 
 void check_counts(const CacheCountResult& counts, const cost::ReferenceCounts& references,
-                  std::int64_t prefetches, const cost::TimeDivision& time) {
+                  std::int64_t prefetches, const cost::TimeSums& time) {
   if (counts.miss_classes) {
     for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
       std::int64_t misses = 0;

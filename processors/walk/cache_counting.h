@@ -60,6 +60,6 @@ class CacheCounting {
 /// Throws InternalError unless the counts add up to those of the nodes, which have asked for `prefetches`
 /// lines beside their misses.
 void check_counts(const CacheCountResult& counts, const cost::ReferenceCounts& references,
-                  std::int64_t prefetches, const cost::TimeDivision& time);
+                  std::int64_t prefetches, const cost::TimeSums& time);
 
 }  // namespace marti::processors::walk

@@ -54,8 +54,10 @@ std::string time_lines(const ComparedPair& pair) {
 
 Json times_json(const std::vector<ActivityTime>& times) {
   return sim::mapped(times, [&](const ActivityTime& time) {
-    return Json{
-        {"name", "time_" + time.activity}, {"a", time.a}, {"b", time.b}, {"change_a_node", time.change}};
+    return Json{{"name", "time_" + time.activity},
+                {"a", tables::json_of(time.a)},
+                {"b", tables::json_of(time.b)},
+                {"change_a_node", time.change}};
   });
 }
 

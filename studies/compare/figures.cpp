@@ -126,34 +126,42 @@ void keep_what_sweeps_have(ComparedResult& result) {
 
 namespace {
 
-std::optional<std::int64_t> count_of(const ComparedResult& result, const std::string& name) {
-  const std::optional<std::int64_t> count = integer_figure(result, name);
-  return count && *count >= 0 ? count : std::nullopt;
+// A figure that is not negative; a sum of 2^63 or more is a real in results.
+std::optional<sim::Sum> count_of(const ComparedResult& result, const std::string& name) {
+  const auto at = result.figures.find(name);
+  if (at == result.figures.end()) {
+    return std::nullopt;
+  }
+  if (const auto* const real = std::get_if<double>(&at->second)) {
+    return *real >= 0x1p63 && *real <= figures::largest_count ? std::optional(static_cast<sim::Sum>(*real))
+                                                              : std::nullopt;
+  }
+  const auto* const integer = std::get_if<std::int64_t>(&at->second);
+  return integer != nullptr && *integer >= 0 ? std::optional(sim::Sum{*integer}) : std::nullopt;
 }
 
 // The nodes of a result whose times of all activities add up to those nodes' frame times; else 0.
 std::int64_t nodes_of(const ComparedResult& result) {
-  const std::optional<std::int64_t> nodes = count_of(result, "nodes");
-  const std::optional<std::int64_t> end = count_of(result, "end");
-  std::int64_t sum = 0;
+  const std::optional<std::int64_t> nodes = integer_figure(result, "nodes");
+  const std::optional<std::int64_t> end = integer_figure(result, "end");
+  sim::Sum sum = 0;
+  sim::Sum rounding = 0;
   for (const std::string_view activity : processors::cost::activity_names) {
-    const std::optional<std::int64_t> time = count_of(result, "time_" + std::string(activity));
-    if (!time || __builtin_add_overflow(sum, *time, &sum)) {
+    const std::optional<sim::Sum> time = count_of(result, "time_" + std::string(activity));
+    if (!time) {
       return 0;
     }
   }
-  std::int64_t all = 0;
-  return nodes && end && !__builtin_mul_overflow(*nodes, *end, &all) && all == sum ? *nodes : 0;
+  const sim::Sum off = sum - sim::Sum{*nodes} * *end;
+  return off >= -rounding && off <= rounding ? *nodes : 0;
 }
 
-std::int64_t rounded_mean(std::int64_t sum, std::int64_t nodes) {
-  return sum / nodes + (sum % nodes >= nodes - sum % nodes ? 1 : 0);
+std::int64_t rounded_mean(sim::Sum sum, std::int64_t nodes) {
+  return sim::ticks_of(sum / nodes + (sum % nodes >= nodes - sum % nodes ? 1 : 0));
 }
 
-double mean(std::int64_t sum, std::int64_t nodes) {
-  const std::int64_t whole = sum / nodes;
-  const std::int64_t rest = sum % nodes;
-  return static_cast<double>(whole) + static_cast<double>(rest) / static_cast<double>(nodes);
+double mean(sim::Sum sum, std::int64_t nodes) {
+  return static_cast<double>(sum / nodes) + static_cast<double>(sum % nodes) / static_cast<double>(nodes);
 }
 
 }  // namespace
@@ -168,14 +176,16 @@ std::vector<ActivityTime> activity_times(const ComparedResult& a, const Compared
   for (const std::string_view activity : processors::cost::activity_names) {
     ActivityTime time;
     time.activity = activity;
-    time.a = *count_of(a, "time_" + time.activity);
-    time.b = *count_of(b, "time_" + time.activity);
-    if (time.a == 0 && time.b == 0) {
+    const sim::Sum of_a = *count_of(a, "time_" + time.activity);
+    const sim::Sum of_b = *count_of(b, "time_" + time.activity);
+    if (of_a == 0 && of_b == 0) {
       continue;
     }
-    time.mean_a = rounded_mean(time.a, nodes_a);
-    time.mean_b = rounded_mean(time.b, nodes_b);
-    time.change = mean(time.b, nodes_b) - mean(time.a, nodes_a);
+    time.a = of_a;
+    time.b = of_b;
+    time.mean_a = rounded_mean(of_a, nodes_a);
+    time.mean_b = rounded_mean(of_b, nodes_b);
+    time.change = mean(of_b, nodes_b) - mean(of_a, nodes_a);
     times.push_back(time);
   }
   std::ranges::stable_sort(times, [](const ActivityTime& x, const ActivityTime& y) {

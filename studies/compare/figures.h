@@ -63,8 +63,8 @@ void keep_what_sweeps_have(ComparedResult& result);
 /// The time of a machine's nodes in one activity. A mean of a node is the nodes' time by their number.
 struct ActivityTime {
   std::string activity;
-  std::int64_t a = 0;       ///< of all nodes of A, ps
-  std::int64_t b = 0;       ///< of all nodes of B, ps
+  tables::Cell a;           ///< of all nodes of A, ps
+  tables::Cell b;           ///< of all nodes of B, ps
   std::int64_t mean_a = 0;  ///< of a node, rounded to ps
   std::int64_t mean_b = 0;
   double change = 0.0;  ///< of the mean, ps, before rounding

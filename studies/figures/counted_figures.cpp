@@ -39,16 +39,16 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
             r.unloaded_miss);
   parts.add_count("events", {"1", "events of the simulation", Merge::one}, r.events);
   parts.add_all("host_", "host", std::optional(r.host));
-  const processors::cost::TimeDivision time = r.time();
+  const processors::cost::TimeSums time = r.time();
   for (std::size_t i = 0; i < processors::cost::activities; ++i) {
     parts.add("time_", processors::cost::activity_names[i],
               {"ps", "time of all nodes in this activity (model.md, Accounting)"}, time[i]);
   }
-  sim::Ticks without_work = 0;
+  sim::Sum without_work = 0;
   for (const processors::cost::NodeStatistics& node : r.nodes) {
     if (!processors::replay::had_work(node)) {
       for (const Activity activity : {Activity::idle, Activity::message_wait}) {
-        without_work = sim::add_ticks(without_work, node.time[static_cast<std::size_t>(activity)]);
+        without_work += node.time[static_cast<std::size_t>(activity)];
       }
     }
   }
@@ -150,7 +150,7 @@ Counts counts_of(const MachineConfig& machine, const MachineResult& result) {
   return counts_of(machine, result, totals_of(result));
 }
 
-std::optional<std::int64_t> count_of(const Counts& counts, std::string_view figure) {
+std::optional<Count> count_of(const Counts& counts, std::string_view figure) {
   static const std::map<std::string, std::size_t, std::less<>> places = [] {
     std::map<std::string, std::size_t, std::less<>> made;
     for (std::size_t i = 0; i < counted_figures().size(); ++i) {

@@ -15,8 +15,7 @@ namespace marti::studies::figures {
 /// In order. The first is "end", the frame time in ps.
 [[nodiscard]] std::span<const FigureEntry> counted_figures();
 
-/// One value for each of counted_figures(), whatever the machine. Throws InternalError for a sum that does
-/// not fit.
+/// One value for each of counted_figures(), whatever the machine.
 [[nodiscard]] Counts counts_of(const processors::machine::MachineConfig& machine,
                                const processors::replay::MachineResult& result);
 /// `totals` must be totals_of(result).
@@ -24,6 +23,6 @@ namespace marti::studies::figures {
                                const processors::replay::MachineResult& result, const MachineTotals& totals);
 
 /// The value of the counted figure of this name. Throws InternalError when there is none.
-[[nodiscard]] std::optional<std::int64_t> count_of(const Counts& counts, std::string_view figure);
+[[nodiscard]] std::optional<Count> count_of(const Counts& counts, std::string_view figure);
 
 }  // namespace marti::studies::figures

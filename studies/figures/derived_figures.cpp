@@ -197,7 +197,7 @@ std::optional<double> figure_of(const MeasuredCounts& counts, std::string_view n
     const Counts* const row = whose == Whose::own    ? counts.own
                               : whose == Whose::base ? counts.base
                                                      : counts.compared;
-    const std::optional<std::int64_t> value = row == nullptr ? std::nullopt : count_of(*row, figure);
+    const std::optional<Count> value = row == nullptr ? std::nullopt : count_of(*row, figure);
     return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
   };
   const auto at = figures_by_name().find(name);

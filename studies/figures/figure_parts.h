@@ -14,8 +14,18 @@
 
 namespace marti::studies::figures {
 
+/// The value of a counted figure: an integer. One of 2^63 or more, which only a sum over nodes can be, is
+/// rounded to the nearest that a double holds, because that is how stores and files have it.
+using Count = sim::Sum;
+/// No sum over nodes is above it: 2^24 nodes of 2^8 contexts wait for less than 2^63 ps each.
+inline constexpr double largest_count = 0x1p95;
+[[nodiscard]] inline Count rounded(Count sum) {
+  const auto fits = static_cast<std::int64_t>(sum);
+  return fits == sum ? sum : static_cast<Count>(static_cast<double>(sum));
+}
+
 /// The values of counted figures, one for each entry; std::nullopt where a machine has no such part.
-using Counts = std::vector<std::optional<std::int64_t>>;
+using Counts = std::vector<std::optional<Count>>;
 
 /// Calls visit(name, value) for each that has a value.
 template <class Visit>
@@ -39,33 +49,39 @@ class FigureParts {
     Better better = Better::lower;
   };
   void add(std::string_view prefix, std::string_view name, const Description& description,
-           std::optional<std::int64_t> value) {
+           std::optional<Count> value) {
     if (entries_ != nullptr) {
       entries_->push_back({std::string(prefix) + std::string(name), std::string(description.unit),
                            std::string(description.text), description.merge, description.better});
     } else {
-      values_.push_back(value);
+      values_.push_back(value ? std::optional(rounded(*value)) : std::nullopt);
     }
   }
-  void add(std::string_view name, const Description& description, std::optional<std::int64_t> value) {
+  void add(std::string_view name, const Description& description, std::optional<Count> value) {
     add("", name, description, value);
   }
   /// A count that must fit.
   void add_count(std::string_view name, const Description& description, std::optional<std::uint64_t> value) {
     sim::ensure(!value || *value <= static_cast<std::uint64_t>(INT64_MAX), "a counted figure overflowed");
-    add("", name, description, value ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt);
+    add("", name, description, value);
   }
-  /// Every declared counter; without values for std::nullopt. `whose` goes before the descriptions.
+  /// Every declared counter of a part, or of the sums of many; without values for std::nullopt. `whose` goes
+  /// before the descriptions.
   template <class S>
   void add_all(std::string_view prefix, std::string_view whose, const std::optional<S>& statistics) {
-    const S counted = statistics.value_or(S{});
-    sim::for_each_counter(counted, [&](const sim::Counter<S>& counter, std::int64_t value) {
+    const auto enter = [&](const auto& counter, Count value) {
       const std::string text =
           entries_ == nullptr ? std::string() : std::string(whose) + ": " + std::string(counter.description);
       const Merge merge = counter.rule == sim::MergeRule::maximum ? Merge::largest : Merge::sum;
       add(prefix, counter.name, {counter.unit, text, merge, counter.better},
           statistics ? std::optional(value) : std::nullopt);
-    });
+    };
+    const S counted = statistics.value_or(S{});
+    if constexpr (sim::HasCounters<S>) {
+      sim::for_each_counter(counted, enter);
+    } else {
+      counted.for_each(enter);
+    }
   }
 
   [[nodiscard]] Counts take_values() { return std::move(values_); }

@@ -43,7 +43,7 @@ Limit find_limit(const processors::machine::MachineConfig& machine,
   if (result.end == 0) {
     return Limit::nothing;  // the frame takes no time
   }
-  const processors::cost::TimeDivision time = result.time();
+  const processors::cost::TimeSums time = result.time();
   const auto part = [&](std::initializer_list<Activity> parts) {
     return std::accumulate(parts.begin(), parts.end(), 0.0, [&](double sum, Activity activity) {
       return sum + static_cast<double>(time[static_cast<std::size_t>(activity)]);

@@ -106,7 +106,7 @@ FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) 
   if (machine.scheme == Scheme::image) {
     return waits;
   }
-  const processors::cost::TimeDivision time = result.time();
+  const processors::cost::TimeSums time = result.time();
   const auto of = [&](Activity activity) {
     return static_cast<double>(time[static_cast<std::size_t>(activity)]);
   };

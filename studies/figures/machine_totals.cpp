@@ -10,15 +10,18 @@ namespace {
 
 // Adds a part's statistics to those of all parts of its kind, which have no value if there is no part.
 template <class S>
-void merge_into(std::optional<S>& sum, const S& part) {
+void merge_into(std::optional<sim::Sums<S>>& sums, const S& part) {
+  if (!sums) {
+    sums.emplace();
+  }
+  sums->merge(part);
+}
+
+void merge_waits(std::optional<memory::WaitStatistics>& sum, const memory::WaitStatistics& part) {
   if (!sum) {
     sum.emplace();
   }
   sim::merge(*sum, part);
-}
-
-void merge_waits(std::optional<memory::WaitStatistics>& sum, const memory::WaitStatistics& part) {
-  merge_into(sum, part);
   sum->histogram.merge(part.histogram);
 }
 

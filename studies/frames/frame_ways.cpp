@@ -14,7 +14,8 @@ WayOutcome outcome_of(const processors::replay::MachineResult& result) {
   WayOutcome outcome;
   outcome.build = result.build.start_up;
   outcome.render = result.end - result.build.start_up;
-  outcome.building = result.time()[static_cast<std::size_t>(processors::cost::Activity::building)];
+  outcome.building =
+      sim::ticks_of(result.time()[static_cast<std::size_t>(processors::cost::Activity::building)]);
   const processors::node::BuildLevel all = result.build.all_levels();
   outcome.start_up_splits = all.start_up_splits;
   outcome.splits = all.splits;

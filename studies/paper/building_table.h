@@ -34,18 +34,18 @@ struct InitialLevel {
 /// One machine that began with the tree built to an initial level.
 struct LevelOutcome {
   InitialLevel initial;
-  sim::Ticks build = 0;                   ///< until the initial tree was there
-  sim::Ticks render = 0;                  ///< from then to the end of the frame, building on demand included
-  processors::cost::TimeDivision time{};  ///< of all nodes together, from the beginning of the build
-  std::uint64_t splits = 0;               ///< branches divided, before the frame and in it
-  std::uint64_t nodes = 0;                ///< of the tree that the frame leaves: branches, leaves, partial
+  sim::Ticks build = 0;               ///< until the initial tree was there
+  sim::Ticks render = 0;              ///< from then to the end of the frame, building on demand included
+  processors::cost::TimeSums time{};  ///< of all nodes together, from the beginning of the build
+  std::uint64_t splits = 0;           ///< branches divided, before the frame and in it
+  std::uint64_t nodes = 0;            ///< of the tree that the frame leaves: branches, leaves, partial
   std::uint64_t partial = 0;
   std::uint64_t bytes = 0;  ///< of its records and lists
 
   [[nodiscard]] sim::Ticks total() const { return sim::add_ticks(build, render); }
   /// Compute time for building, before the frame and in it.
   [[nodiscard]] sim::Ticks building() const {
-    return time[static_cast<std::size_t>(processors::cost::Activity::building)];
+    return sim::ticks_of(time[static_cast<std::size_t>(processors::cost::Activity::building)]);
   }
 };
 

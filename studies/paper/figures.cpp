@@ -44,11 +44,11 @@ double share(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-TaskTimes tasks_of(const processors::cost::TimeDivision& time) {
+TaskTimes tasks_of(const processors::cost::TimeSums& time) {
   TaskTimes sums{};
   for (std::size_t i = 0; i < time.size(); ++i) {
     sim::Ticks& sum = sums[static_cast<std::size_t>(task_of(static_cast<processors::cost::Activity>(i)))];
-    sum = sim::add_ticks(sum, time[i]);
+    sum = sim::ticks_of(sum + time[i]);
   }
   return sums;
 }

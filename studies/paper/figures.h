@@ -21,7 +21,7 @@ using TaskTimes = std::array<sim::Ticks, tasks>;
 
 /// The nodes' activities gathered by task: cache, interconnect and banks are memory; waiting for the host,
 /// for locks and messages, and idling are other.
-[[nodiscard]] TaskTimes tasks_of(const processors::cost::TimeDivision& time);
+[[nodiscard]] TaskTimes tasks_of(const processors::cost::TimeSums& time);
 
 /// "figure1": time by task. One row for each run and task; times[i] is of runs[i].
 [[nodiscard]] tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times);

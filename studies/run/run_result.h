@@ -48,16 +48,20 @@ struct RunResult {
   [[nodiscard]] std::optional<double> figure(std::string_view name) const {
     return figures::figure_of({&counts, &one_node_counts}, name);
   }
-  /// A counted figure of the timed machine; 0 where the machine has no such part.
+  /// A counted figure of the timed machine; 0 where the machine has no such part. Not for sums of times over
+  /// nodes, which may not fit: then an InternalError.
   [[nodiscard]] std::int64_t count(std::string_view name) const {
-    return figures::count_of(counts, name).value_or(0);
+    const figures::Count value = figures::count_of(counts, name).value_or(0);
+    const auto fits = static_cast<std::int64_t>(value);
+    sim::ensure(fits == value, "a counted figure does not fit in 64 bits");
+    return fits;
   }
   /// The counted figures that a component's counters are merged into: those whose names begin with `prefix`.
   template <sim::HasCounters S>
   [[nodiscard]] S counters(const std::string& prefix) const {
     S sum;
     for (const sim::Counter<S>& counter : S::counters()) {
-      sum.*counter.member = count(prefix + std::string(counter.name));
+      counter.set(sum, figures::count_of(counts, prefix + std::string(counter.name)).value_or(0));
     }
     return sum;
   }

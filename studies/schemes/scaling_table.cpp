@@ -19,7 +19,7 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::replay::Mac
   point.scheme = machine.config.scheme;
   point.nodes = machine.config.all_nodes();
   point.end = result.end;
-  point.one_node_end = *figures::count_of(one_node, "end");
+  point.one_node_end = sim::ticks_of(*figures::count_of(one_node, "end"));
   point.limit = figures::find_limit(machine.config, result);
   const figures::Counts counts = figures::counts_of(machine.config, result);
   const auto figure = [&](std::string_view name) { return figures::figure_of({&counts, &one_node}, name); };

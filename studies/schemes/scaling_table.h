@@ -9,6 +9,7 @@
 
 #include "processors/program/work_log.h"
 #include "processors/replay/replay.h"
+#include "studies/figures/figure_parts.h"
 #include "studies/figures/find_limit.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/schemes/tree_tables.h"
@@ -30,8 +31,8 @@ struct ScalingPoint {
   std::optional<double> hit_ratio;
   double idle = 0.0;     ///< share of the nodes' time
   double waiting = 0.0;  ///< share of the nodes' time spent waiting for anything but the end
-  std::optional<std::int64_t> messages;
-  std::optional<std::int64_t> message_bytes;
+  std::optional<figures::Count> messages;
+  std::optional<figures::Count> message_bytes;
 };
 
 /// Times every machine with every number of nodes from the log; points in the order of the machines, then of

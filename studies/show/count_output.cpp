@@ -27,8 +27,8 @@ std::string_view name_of(memory::RecordKind kind) {
 
 std::string_view work_of(const AttributionRow& row) { return row.splitting ? "split" : "trace"; }
 
-std::string percent_of(std::int64_t part, std::int64_t whole) {
-  return tables::percent(sim::ratio(part, whole).value_or(0.0));
+std::string percent_of(sim::Sum part, sim::Sum whole) {
+  return tables::percent(whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole));
 }
 
 // Sums of the rows by what `key` makes of them.
@@ -157,7 +157,7 @@ tables::Table attribution_table(const std::vector<AttributionRow>& rows) {
                                        processors::program::ray_kind_names[static_cast<std::size_t>(row.ray)],
                                        row.bounce, work_of(row)};
     sim::for_each_counter(row.counts,
-                          [&](const auto& /*counter*/, std::int64_t value) { cells.emplace_back(value); });
+                          [&](const auto& /*counter*/, sim::Sum value) { cells.emplace_back(value); });
     table.add_row(std::move(cells));
   }
   return table;

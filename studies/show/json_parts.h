@@ -9,6 +9,7 @@
 
 #include "sim/mapped.h"
 #include "sim/statistics.h"
+#include "studies/tables/json_table.h"
 
 namespace marti::studies::show {
 
@@ -26,8 +27,8 @@ template <class S>
 /// Adds every declared counter to an object, under its name behind `prefix`.
 template <class S>
 void add_counters(nlohmann::ordered_json& object, const S& statistics, const std::string& prefix = {}) {
-  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, std::int64_t value) {
-    object[prefix + json_name(counter)] = value;
+  sim::for_each_counter(statistics, [&](const sim::Counter<S>& counter, auto value) {
+    object[prefix + json_name(counter)] = tables::json_of(tables::Cell(value));
   });
 }
 

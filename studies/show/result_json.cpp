@@ -65,9 +65,13 @@ Json figures_json(const run::RunResult& r) {
                 {"image_hash", hash(r.functional.image_hash)},
                 {"hit_hash", hash(r.functional.frame.hit_hash)}};
   figures::for_each_count(run::frame_figures(), run::frame_counts(r.functional),
-                          [&frame](const std::string& name, std::int64_t value) { frame[name] = value; });
+                          [&frame](const std::string& name, figures::Count value) {
+                            frame[name] = tables::json_of(tables::Cell(value));
+                          });
   Json machine = Json::object();
-  const auto enter = [&machine](const std::string& name, auto value) { machine[name] = value; };
+  const auto enter = [&machine](const std::string& name, auto value) {
+    machine[name] = tables::json_of(tables::Cell(value));
+  };
   figures::for_each_count(figures::counted_figures(), r.counts, enter);
   figures::for_each_derived({&r.counts, &r.one_node_counts}, enter);
   return {{"frame", frame}, {"machine", machine}};

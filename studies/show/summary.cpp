@@ -142,7 +142,7 @@ void time_lines(Lines out, const run::RunResult& r) {
   fmt::format_to(out, "\nwhere the nodes' time goes\n");
   for (const std::string_view activity : processors::cost::activity_names) {
     const std::string name(activity);
-    if (r.count("time_" + name) != 0) {
+    if (figures::count_of(r.counts, "time_" + name) != 0) {
       fmt::format_to(out, "  {:<20}{:>9}\n", name, percent(r.figure("share_" + name)));
     }
   }

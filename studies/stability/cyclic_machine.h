@@ -72,7 +72,7 @@ struct Cyclic {
                         wait) +
              std::llabs(node.finish - (reads * (think + service) + wait + after));
     }
-    return sum + std::llabs(result.clusters[0].interconnect.waits.sum -
+    return sum + std::llabs(sim::ticks_of(result.clusters[0].interconnect.waits.sum) -
                             (n * (n - 1) / 2 * service + n * (reads - 1) * each));
   }
 

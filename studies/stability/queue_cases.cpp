@@ -194,7 +194,7 @@ CaseOutcome littles_law(const CaseSize& size) {
     length += change;
     last = at;
   }
-  const auto off = static_cast<double>(std::llabs(area - bank.statistics()[0].waits.sum));
+  const auto off = static_cast<double>(std::llabs(area - sim::ticks_of(bank.statistics()[0].waits.sum)));
   return {fmt::format("{:g} of {} ticks off", off, tables::grouped(static_cast<std::uint64_t>(area))), off,
           0.0};
 }

@@ -1,6 +1,7 @@
 #include "studies/tables/table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -16,13 +17,19 @@ bool is_plain(std::string_view name, bool key = false) {
   });
 }
 
+// A sum that does not fit in 64 bits.
+bool is_large_sum(const Cell& cell) {
+  const auto* real = std::get_if<double>(&cell);
+  return real != nullptr && std::abs(*real) >= 0x1p63;
+}
+
 bool fits(const Cell& cell, ColumnType type) {
   if (std::holds_alternative<std::monostate>(cell)) {
     return true;
   }
   switch (type) {
     case ColumnType::integer:
-      return std::holds_alternative<std::int64_t>(cell);
+      return std::holds_alternative<std::int64_t>(cell) || is_large_sum(cell);
     case ColumnType::real:
       return std::holds_alternative<double>(cell);
     case ColumnType::text:
@@ -56,6 +63,18 @@ Column real_column(std::string_view name, std::string_view unit, std::string_vie
 Cell::Cell(const std::optional<std::int64_t>& number) {
   if (number) {
     *this = *number;
+  }
+}
+
+Cell::Cell(sim::Sum number) : CellValue(static_cast<double>(number)) {
+  if (const auto fits = static_cast<std::int64_t>(number); fits == number) {
+    emplace<std::int64_t>(fits);
+  }
+}
+
+Cell::Cell(const std::optional<sim::Sum>& number) {
+  if (number) {
+    *this = Cell(*number);
   }
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/time.h"
 
 namespace marti::studies::tables {
 
@@ -24,7 +25,7 @@ enum class ColumnType : std::uint8_t { integer, real, text, boolean };
 struct Column {
   /// Lower-case letters, digits and '_'; of a key of the configuration also '.'. Unique in the table.
   std::string name;
-  ColumnType type = ColumnType::integer;
+  ColumnType type = ColumnType::integer;  ///< an integer of 2^63 or more is the nearest real
   /// "1" for a count, else "ps", "byte", "fraction", "s", ...; empty for a text.
   std::string unit;
   std::string description;  ///< for people, without the full stop
@@ -51,6 +52,8 @@ class Cell : public CellValue {
                 "a count does not fit a table");
   }
   Cell(double number) : CellValue(number) {}
+  /// An integer; a sum that does not fit in 64 bits is the nearest real.
+  Cell(sim::Sum number);
   Cell(std::string text) : CellValue(std::move(text)) {}
   Cell(std::string_view text) : CellValue(std::string(text)) {}
   Cell(const char* text) : CellValue(std::string(text)) {}
@@ -60,6 +63,7 @@ class Cell : public CellValue {
   // These are defined elsewhere: GCC 12, where it inlines them, warns of a text that is not there.
   Cell(const std::optional<std::int64_t>& number);
   Cell(const std::optional<double>& number);
+  Cell(const std::optional<sim::Sum>& number);
   Cell(const Cell& other);
   Cell(Cell&& other) noexcept;
   Cell& operator=(const Cell& other);

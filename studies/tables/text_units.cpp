@@ -16,6 +16,9 @@ constexpr sim::Ticks ticks_per_nanosecond = sim::ticks_per_second / 1'000'000'00
 // A figure from here on is shown in the larger unit: in the smaller one it would be rounded to 1000.000.
 constexpr double least_whole = 0.9999995;
 
+// The longest time that ticks hold, ps, as a double.
+constexpr double longest = 0x1.fffffffffffffp62;
+
 }  // namespace
 
 std::string seconds(sim::Ticks ticks) {
@@ -36,7 +39,7 @@ std::string seconds(sim::Ticks ticks) {
 }
 
 std::string computed_seconds(double ps) {
-  return seconds(static_cast<sim::Ticks>(std::llround(std::clamp(ps, 0.0, 0x1p62))));
+  return seconds(static_cast<sim::Ticks>(std::llround(std::clamp(ps, 0.0, longest))));
 }
 
 std::string signed_seconds(sim::Ticks ticks) {
@@ -122,8 +125,10 @@ std::string figure_text(const Cell& cell, std::string_view unit, std::string_vie
   if (!number || !std::isfinite(*number)) {
     return short_text(cell, missing);
   }
-  constexpr double longest = 0x1p62;  // no machine takes longer; a larger number is no time
-  if (unit == "ps" && std::abs(*number) <= longest) {
+  if (unit == "ps" && std::abs(*number) > longest) {
+    return fmt::format("{:.4g} s", *number * 1e-12);  // a sum over nodes
+  }
+  if (unit == "ps") {
     const auto* ticks = std::get_if<std::int64_t>(&cell);
     const std::string text = signed_seconds(ticks != nullptr ? *ticks : std::llround(*number));
     return text.starts_with('+') ? text.substr(1) : text;

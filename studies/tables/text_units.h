@@ -14,7 +14,7 @@ namespace marti::studies::tables {
 /// "1.234 s", "1.234 ms", "1.234 us", below 1 ns "123 ps"; "0 s".
 [[nodiscard]] std::string seconds(sim::Ticks ticks);
 
-/// Like seconds(), for a time in ps that was computed: rounded; below 0 ps as 0, above 2^62 ps as 2^62.
+/// Like seconds(), for a time in ps that was computed: rounded; below 0 ps as 0, above 2^63 ps as 2^63.
 [[nodiscard]] std::string computed_seconds(double ps);
 
 /// A change of a time: "+1.234 ms", "-1.234 us"; "0 s".

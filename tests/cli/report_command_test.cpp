@@ -8,6 +8,7 @@
 #include "sim/sha256.h"
 #include "studies/report/plots/vega_bundle.h"
 #include "tests/cli/printed_json.h"
+#include "tests/support/csv_records.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -327,6 +328,30 @@ TEST_F(ReportCommand, ReportsAPointOfASweepAsARun) {
   EXPECT_EQ(shown, point["end"].get<std::int64_t>() * point["nodes"].get<std::int64_t>());
   expect_refused("report " + quoted(fs::path(sweep.string() + ":99")),
                  "there is no such point; the sweep has 24");
+}
+
+// Many nodes for weeks: sums over them exceed 2^63 ps, and are the same reals in all that is written.
+TEST_F(ReportCommand, ReadsSumsThatDoNotFit) {
+  write(place("slow.toml"),
+        "[scene]\nsource = \"teapot:2\"\n[image]\nwidth = 20\nheight = 20\n[machine]\nnodes = 32\n"
+        "[host]\nclock = \"1 Hz\"\nlatency_cycles = 1_000_000\n");
+  const std::string file = quoted(place("slow.toml"));
+  ASSERT_EQ(marti("run " + file + " --no-what-helps -o " + quoted(place("run"))).status, 0);
+  ASSERT_EQ(marti("sweep " + file + " --axis cache.line=32B --quiet -o " + quoted(place("sweep"))).status, 0);
+  for (const char* what : {"run", "sweep", "sweep:0"}) {
+    const Outcome made = marti("report " + quoted(place(what)));
+    EXPECT_EQ(made.status, 0) << made.output;
+  }
+  const json run = json::parse(read(place("run") / "result.json"))["figures"]["machine"];
+  EXPECT_GT(run["time_idle"].get<double>(), 0x1p63);
+  const std::vector<CsvRecord> csv = read_csv(read(place("sweep") / "points.csv")).value();
+  for (std::size_t i = 0; i < csv.at(0).size(); ++i) {
+    if (run.contains(csv[0][i])) {
+      EXPECT_EQ(std::stod(csv.at(1).at(i)), run[csv[0][i]].get<double>()) << csv[0][i];
+    }
+  }
+  const json compared = printed_json("compare " + quoted(place("run")) + " " + quoted(place("sweep:0")));
+  EXPECT_EQ(compared["numbers"], json::array());
 }
 
 TEST_F(ReportCommand, ReplacesNothingButPages) {

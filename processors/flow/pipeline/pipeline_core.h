@@ -216,7 +216,7 @@ class PipelineCore : public FlowNodesBase<PipelineCore> {
     FlowRay& ray = rays_[at.ray];
     FlowCounts& counts = counts_[node];
     ++counts.taken;
-    counts.queued = sim::add_ticks(counts.queued, now - ray.arrival);
+    counts.queued += now - ray.arrival;
     if (stages_[at.state].first_waiter != none) {
       give_slot(node, now);
     }

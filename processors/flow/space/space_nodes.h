@@ -278,7 +278,7 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
     FlowCounts& counts = counts_[number];
     ++counts.taken;
-    counts.queued = sim::add_ticks(counts.queued, now - rays_[ray].arrival);
+    counts.queued += now - rays_[ray].arrival;
     walk::Cursor& cursor = cursors_[number];
     cursor.time = sim::add_ticks(now, receive_);
     spend(number, cost::Activity::messaging, receive_);

@@ -13,6 +13,8 @@
 #include "processors/energy/energy.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/chart_library.h"
+#include "studies/tables/cell_number.h"
+#include "studies/tables/json_table.h"
 
 namespace marti::studies::report {
 
@@ -53,9 +55,9 @@ tables::Table cycles_table(const tables::RunJson& run) {
     all += run.count("figures.machine.time_" + std::string(activity));
   }
   for (const std::string_view activity : processors::cost::activity_names) {
-    const std::int64_t ps = whole(run, "figures.machine.time_" + std::string(activity));
-    if (ps > 0) {
-      table.add_row({activity, ps, static_cast<double>(ps) / all});
+    const tables::Cell ps = tables::cell_of(run.find("figures.machine.time_" + std::string(activity)));
+    if (const double number = tables::number_of(ps).value_or(0.0); number > 0.0) {
+      table.add_row({activity, ps, number / all});
     }
   }
   return table;

@@ -8,6 +8,7 @@
 #include "studies/figures/derived_figures.h"
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
+#include "studies/tables/json_table.h"
 
 namespace marti::studies::sweep {
 
@@ -17,7 +18,9 @@ using Json = nlohmann::ordered_json;
 
 Json machine_figures(const SweepReader& sweep, const SweepRow& row, std::int64_t base_machine) {
   Json figures = Json::object();
-  const auto enter = [&figures](const std::string& name, auto value) { figures[name] = value; };
+  const auto enter = [&figures](const std::string& name, auto value) {
+    figures[name] = tables::json_of(tables::Cell(value));
+  };
   figures::for_each_count(figures::counted_figures(), row.counters, enter);
   const std::optional<SweepRow> base = sweep.read_result(base_machine);
   const std::optional<std::int64_t> other = sweep.compare();
@@ -30,7 +33,9 @@ Json machine_figures(const SweepReader& sweep, const SweepRow& row, std::int64_t
 Json frame_json(const FrameRow& frame) {
   Json figures = {{"scene", frame.scene}, {"image_hash", frame.image_hash}, {"hit_hash", frame.hit_hash}};
   figures::for_each_count(run::frame_figures(), frame.counters,
-                          [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+                          [&figures](const std::string& name, figures::Count value) {
+                            figures[name] = tables::json_of(tables::Cell(value));
+                          });
   return figures;
 }
 

@@ -12,8 +12,6 @@ namespace marti::studies::sweep {
 
 namespace {
 
-using Counters = std::vector<std::optional<std::int64_t>>;
-
 // Columns are found by their names: another version may have had others.
 std::vector<int> places_of(const tables::SqliteStatement& row,
                            std::span<const figures::FigureEntry> columns) {
@@ -26,11 +24,21 @@ std::vector<int> places_of(const tables::SqliteStatement& row,
   return places;
 }
 
-Counters counters_at(const tables::SqliteStatement& row, const std::vector<int>& places) {
-  Counters counters;
+// A sum over nodes that does not fit in 64 bits is a real.
+std::optional<figures::Count> count_at(const tables::SqliteStatement& row, int place) {
+  const tables::Cell cell = row.cell(place);
+  const auto* const real = std::get_if<double>(&cell);
+  if (real != nullptr && *real >= 0x1p63 && *real <= figures::largest_count) {
+    return static_cast<figures::Count>(*real);
+  }
+  return row.get<std::int64_t>(place);
+}
+
+figures::Counts counters_at(const tables::SqliteStatement& row, const std::vector<int>& places) {
+  figures::Counts counters;
   counters.reserve(places.size());
   for (const int place : places) {
-    counters.push_back(place < 0 ? std::nullopt : row.get<std::int64_t>(place));
+    counters.push_back(place < 0 ? std::nullopt : count_at(row, place));
   }
   return counters;
 }

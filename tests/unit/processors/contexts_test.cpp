@@ -99,7 +99,7 @@ RC_GTEST_PROP(Contexts, NodesWithNothingToBuildAreThoseWithAGivenTree, (std::uin
 TEST(Contexts, RandomBuildersDoAllThereIsToDo) {
   ContextCounts contexts;
   BuildCounts built;
-  sim::Ticks lock_wait = 0;
+  sim::Sum lock_wait = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     test::Random random(seed);
     const WorkLog log = test::random_tree_log(random, 8, 8);

@@ -202,7 +202,7 @@ TEST(CriticalPath, ItsPiecesFollowEachOtherFromZeroToTheEnd) {
     EXPECT_EQ(path.node_changes, changes);
     if (c.machine.placement == Placement::shared &&
         c.machine.interconnect.kind == memory::InterconnectKind::bus) {
-      sim::Ticks busy = 0;
+      sim::Sum busy = 0;
       for (const ClusterResult& cluster : result.clusters) {
         busy += cluster.interconnect.busy;
       }

@@ -85,7 +85,7 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
       sum.references += figures.references;
       sum.misses += figures.misses;
     }
-    const TimeDivision time = sampled.time();
+    const auto time = sampled.time();
     sim::Ticks worked = 0;
     for (const NodeStatistics& node : sampled.nodes) {
       worked += node.finish;

@@ -11,8 +11,8 @@ namespace marti::sim {
 namespace {
 
 struct QueueCounters {
+  Sum waits = 0;
   std::int64_t arrivals = 0;
-  std::int64_t waits = 0;
   std::int64_t longest = 0;
 
   static constexpr auto counters() {
@@ -36,17 +36,26 @@ struct Incomplete {
 static_assert(!declares_every_member<Incomplete>());
 
 TEST(Statistics, CountersMergeByTheirRule) {
-  QueueCounters a{3, 30, 2};
-  merge(a, QueueCounters{4, 5, 1});
-  EXPECT_EQ(a, (QueueCounters{7, 35, 2}));
-  a.waits = std::numeric_limits<std::int64_t>::max();
-  EXPECT_THROW(merge(a, QueueCounters{0, 1, 0}), InternalError);
+  QueueCounters a{30, 3, 2};
+  merge(a, QueueCounters{5, 4, 1});
+  EXPECT_TRUE(a == (QueueCounters{35, 7, 2}));
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  merge(a, QueueCounters{most, 0, 0});
+  EXPECT_TRUE(a == (QueueCounters{Sum{most} + 35, 7, 2})) << "a sum of times has more than 64 bits";
+  EXPECT_THROW(merge(a, QueueCounters{0, most, 0}), InternalError);
+  Sums<QueueCounters> sums;
+  sums.merge({1, most, 4});
+  sums.merge({2, most, 3});
+  sums.for_each([](const auto& counter, Sum value) {
+    EXPECT_TRUE(value == (counter.name == "waits" ? 3 : counter.name == "longest" ? 4 : Sum{most} * 2));
+  });
 }
 
 TEST(Statistics, DeclaredNamesAreVisitedInOrder) {
   std::string seen;
-  for_each_counter(QueueCounters{7, 35, 2}, [&](const auto& counter, std::int64_t value) {
-    seen += std::string(counter.name) + "=" + std::to_string(value) + " " + std::string(counter.unit) + ";";
+  for_each_counter(QueueCounters{35, 7, 2}, [&](const auto& counter, Sum value) {
+    seen += std::string(counter.name) + "=" + std::to_string(ticks_of(value)) + " " +
+            std::string(counter.unit) + ";";
   });
   EXPECT_EQ(seen, "arrivals=7 1;waits=35 ps;longest=2 1;");
 }

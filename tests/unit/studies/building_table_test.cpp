@@ -51,7 +51,7 @@ RunOutcomes two_levels() {
   RunOutcomes run;
   run.run = {"gears:2", 2};
   const auto building = [](sim::Ticks ticks) {
-    processors::cost::TimeDivision time{};
+    processors::cost::TimeSums time{};
     time[static_cast<std::size_t>(processors::cost::Activity::building)] = ticks;
     return time;
   };

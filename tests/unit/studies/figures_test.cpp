@@ -66,15 +66,14 @@ TEST(Formulas, AreComputedBySqliteWithEqualBits) {
     std::array<Counts, 3> rows;
     constexpr std::array<const char*, 3> tables = {"r", "b", "c"};
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      std::string values;
       for (std::size_t i = 0; i < counted_figures().size(); ++i) {
         const std::uint64_t kind = random() % 8;
-        const auto large = static_cast<std::int64_t>(random() >> (1 + random() % 60));
-        rows[row].push_back(kind == 0 ? std::nullopt : std::optional(kind == 1 ? std::int64_t{0} : large));
-        values += (i == 0 ? "" : ", ") + (rows[row][i] ? std::to_string(*rows[row][i]) : "NULL");
+        const auto large = static_cast<Count>(random() >> (1 + random() % 60)) << (kind == 2 ? 31U : 0U);
+        rows[row].push_back(kind == 0 ? std::nullopt : std::optional(kind == 1 ? 0 : rounded(large)));
       }
-      connection.execute(std::string("DELETE FROM ") + tables[row] + "; INSERT INTO " + tables[row] +
-                         " VALUES (" + values + ")");
+      connection.execute(std::string("DELETE FROM ") + tables[row]);
+      SqliteStatement(connection, insert_sql(tables[row], counted_figures().size()))
+          .run({rows[row].begin(), rows[row].end()});
     }
     for (const FigureEntry& entry : derived_figures()) {
       const std::optional<double> here = figure_of({&rows[0], &rows[1], &rows[2]}, entry.name);
@@ -144,10 +143,8 @@ Pair time_both(const processors::program::WorkLog& log, MachineConfig machine) {
   Pair pair;
   pair.all = processors::replay::replay(log, machine);
   pair.all_counts = counts_of(machine, pair.all);
-  machine.clusters = 1;
-  machine.nodes = 1;
-  pair.one = processors::replay::replay(log, machine);
-  pair.one_counts = counts_of(machine, pair.one);
+  pair.one = processors::replay::replay(log, one);
+  pair.one_counts = counts_of(one, pair.one);
   return pair;
 }
 

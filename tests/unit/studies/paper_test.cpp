@@ -152,10 +152,11 @@ TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
 }
 
 TEST(Tasks, TakeEveryTickOfANode) {
-  processors::cost::TimeDivision time{};
+  processors::cost::TimeSums time{};
   std::iota(time.begin(), time.end(), sim::Ticks{1});
   const studies::paper::TaskTimes sums = studies::paper::tasks_of(time);
-  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}), processors::cost::sum_of(time));
+  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}),
+            std::accumulate(time.begin(), time.end(), sim::Sum{0}));
   for (const sim::Ticks sum : sums) {
     EXPECT_GT(sum, 0);
   }

@@ -220,10 +220,10 @@ TEST(HeatMaps, AddUpToTheMachinesAccounts) {
       }
       return total;
     };
-    const processors::cost::TimeDivision time = result.time();
+    const processors::cost::TimeSums time = result.time();
     const auto part = [&](Activity activity) { return time[static_cast<std::size_t>(activity)]; };
-    EXPECT_EQ(sum(Heat::cycles),
-              processors::cost::sum_of(time) - part(Activity::dispatch_wait) - part(Activity::idle));
+    const auto nodes = static_cast<sim::Sum>(result.nodes.size());
+    EXPECT_EQ(sum(Heat::cycles), nodes * result.end - part(Activity::dispatch_wait) - part(Activity::idle));
     EXPECT_EQ(sum(Heat::misses), result.references().all_misses());
     EXPECT_EQ(sum(Heat::waits), part(Activity::interconnect_wait) + part(Activity::transfer) +
                                     part(Activity::bank_wait) + part(Activity::bank_access) +

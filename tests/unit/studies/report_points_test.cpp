@@ -70,11 +70,13 @@ TEST_F(ReadReportPoints, ReadsThemWithTheirFrames) {
 TEST_F(ReadReportPoints, TakesTheLargestCountsThatAStoreHolds) {
   make([](SweepPlan&) {},
        [](std::size_t machine, Counts& counts) {
-         if (machine == 2) {
-           counts.assign(counts.size(), INT64_MAX);
+         for (std::size_t i = 0; machine == 2 && i < counts.size(); ++i) {
+           const bool sum = counted_figures()[i].merge == Merge::sum;
+           counts[i] = sum ? static_cast<Count>(largest_count) : INT64_MAX;
          }
        });
   EXPECT_EQ(read_report_points(file_).points[2].figure("end"), 0x1p63);
+  EXPECT_EQ(read_report_points(file_).points[2].figure("time_idle"), largest_count);
 }
 
 TEST_F(ReadReportPoints, RefusesAFrameThatTakesNoTime) {

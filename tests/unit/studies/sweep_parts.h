@@ -69,7 +69,8 @@ inline studies::sweep::SweepRow random_sweep_row(Random& random) {
   for (std::size_t i = 0; i < studies::figures::counted_figures().size(); ++i) {
     row.counters.emplace_back();
     if (random() % 3 != 0) {
-      row.counters.back() = static_cast<std::int64_t>(random() >> (1 + random() % 63));
+      row.counters.back() = studies::figures::rounded(
+          static_cast<studies::figures::Count>(random() >> (1 + random() % 63)) << random() % 32);
     }
   }
   row.counters[0] = 1 + static_cast<std::int64_t>(random() % 1000000);
@@ -98,7 +99,7 @@ inline studies::sweep::SweepRow made_row(std::size_t machine) {
 /// One whose figures can be reported: times that are not 0, and sums that fit.
 inline studies::sweep::SweepRow plain_row(std::size_t machine) {
   studies::sweep::SweepRow row = made_row(machine);
-  for (std::optional<std::int64_t>& counter : row.counters) {
+  for (std::optional<studies::figures::Count>& counter : row.counters) {
     counter = static_cast<std::int64_t>(1000 + 10 * machine);
   }
   return row;

@@ -23,8 +23,8 @@ namespace {
 using processors::machine::MachineConfig;
 using processors::replay::MachineResult;
 
-std::map<std::string, std::optional<std::int64_t>> named(const SweepRow& row) {
-  std::map<std::string, std::optional<std::int64_t>> values;
+std::map<std::string, std::optional<Count>> named(const SweepRow& row) {
+  std::map<std::string, std::optional<Count>> values;
   for (std::size_t i = 0; i < row.counters.size(); ++i) {
     values[counted_figures()[i].name] = row.counters[i];
   }
@@ -67,7 +67,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   const SweepRow row = sweep_row(machine, result);
   RC_ASSERT(row.counters.size() == counted_figures().size());
   auto values = named(row);
-  const auto value = [&](const std::string& name) { return values.at(name).value_or(-1); };
+  const auto value = [&](const std::string& name) { return sim::ticks_of(values.at(name).value_or(-1)); };
 
   RC_ASSERT(value("end") == result.end);
   RC_ASSERT(value("nodes") == static_cast<std::int64_t>(result.nodes.size()));
@@ -110,7 +110,7 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   const SweepRow row = sweep_row(machine, result);
   auto values = named(row);
   std::int64_t reads = 0;
-  std::int64_t waits = 0;
+  sim::Sum waits = 0;
   std::int64_t longest = 0;
   std::int64_t count = 0;
   std::int64_t banks = 0;

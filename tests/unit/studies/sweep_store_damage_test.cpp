@@ -40,8 +40,8 @@ void add_cell(std::string& text, const Cell& cell) {
 }
 
 void add_counters(std::string& text, const figures::Counts& counters) {
-  for (const std::optional<std::int64_t>& counter : counters) {
-    add_cell(text, counter ? Cell(*counter) : Cell());
+  for (const std::optional<figures::Count>& counter : counters) {
+    add_cell(text, counter);
   }
 }
 

@@ -31,7 +31,7 @@ TEST(TextUnits, ComputedTimesKeepWithin64Bits) {
   EXPECT_EQ(computed_seconds(1e6), "1.000 us");
   EXPECT_EQ(computed_seconds(1.5), "2 ps");
   EXPECT_EQ(computed_seconds(-1.0), "0 s");
-  EXPECT_EQ(computed_seconds(1e308), computed_seconds(0x1p62));
+  EXPECT_EQ(computed_seconds(1e308), computed_seconds(0x1p63));
 }
 
 TEST(TextUnits, SharesAndChangesArePercentages) {

@@ -14,17 +14,18 @@ class Comparison {
  public:
   void at(std::string place) { place_ = std::move(place); }
 
-  void equal(std::string_view name, std::int64_t replay, std::int64_t systemc) {
+  void equal(std::string_view name, sim::Sum replay, sim::Sum systemc) {
     if (replay != systemc) {
-      lines.push_back(place_ + " " + std::string(name) + ": replay " + std::to_string(replay) + ", SystemC " +
-                      std::to_string(systemc));
+      lines.push_back(place_ + " " + std::string(name) + ": replay " +
+                      std::to_string(static_cast<double>(replay)) + ", SystemC " +
+                      std::to_string(static_cast<double>(systemc)));
     }
   }
 
   template <sim::HasCounters S>
   void counters(const S& replay, const S& systemc) {
-    sim::for_each_counter(replay, [&](const auto& counter, std::int64_t value) {
-      equal(counter.name, value, systemc.*counter.member);
+    sim::for_each_counter(replay, [&](const auto& counter, sim::Sum value) {
+      equal(counter.name, value, counter.value(systemc));
     });
   }
 
