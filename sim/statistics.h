@@ -43,6 +43,7 @@ enum class Better : std::uint8_t {
   lower,
   higher,
   neither,  // it says how large something is
+  program,  // it says how the program worked; it is no property of the machine
 };
 
 /// One declared counter. `unit` is "1" for a plain count, else "byte", "ps", "ps2", "cycle", ...

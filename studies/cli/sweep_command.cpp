@@ -79,7 +79,8 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     throw sim::UserError("--plan: prints the plan, as text; leave out --json, --best and --share");
   }
   if (!arguments.best.empty()) {
-    if (figures::figure_named(arguments.best).better == figures::Better::neither) {
+    const figures::Better better = figures::figure_named(arguments.best).better;
+    if (better != figures::Better::lower && better != figures::Better::higher) {
       throw sim::UserError(
           "--best: of " + arguments.best +
           " neither a lower nor a higher value is better; `marti figures` says of which it is");

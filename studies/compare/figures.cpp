@@ -23,10 +23,39 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const figures::FigureEntry* entry_of(std::string_view name) {
+  constexpr std::string_view of_frame = "frame.";
+  const auto found = [](std::span<const figures::FigureEntry> entries, std::string_view wanted) {
+    const auto at = std::ranges::find(entries, wanted, &figures::FigureEntry::name);
+    return at == entries.end() ? nullptr : &*at;
+  };
+  if (name.starts_with(of_frame)) {
+    return found(run::frame_figures(), name.substr(of_frame.size()));
+  }
+  const figures::FigureEntry* const counted = found(figures::counted_figures(), name);
+  return counted != nullptr ? counted : found(figures::derived_figures(), name);
+}
+
+// Whether the figure says something about the machine or frame, not about the program.
+bool is_compared(std::string_view name) {
+  const figures::FigureEntry* const entry = entry_of(name);
+  return entry == nullptr || entry->of_machine();
+}
+
 void add(const tables::RunJson& run, const std::string& part, const std::string& prefix, Figures& figures) {
   for (const auto& [name, value] : run.at(part).items()) {
-    if (const tables::Cell cell = tables::cell_of(value); !std::holds_alternative<std::monostate>(cell)) {
+    const tables::Cell cell = tables::cell_of(value);
+    if (!std::holds_alternative<std::monostate>(cell) && is_compared(prefix + name)) {
       figures[prefix + name] = cell;
+    }
+  }
+}
+
+void enter(std::span<const figures::FigureEntry> entries, const figures::Counts& counts,
+           const std::string& prefix, Figures& figures) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (counts[i] && entries[i].of_machine()) {
+      figures[prefix + entries[i].name] = *counts[i];
     }
   }
 }
@@ -44,19 +73,6 @@ ComparedResult compared(const tables::RunJson& run, const std::string& name) {
   return result;
 }
 
-const figures::FigureEntry* entry_of(std::string_view name) {
-  constexpr std::string_view of_frame = "frame.";
-  const auto found = [](std::span<const figures::FigureEntry> entries, std::string_view wanted) {
-    const auto at = std::ranges::find(entries, wanted, &figures::FigureEntry::name);
-    return at == entries.end() ? nullptr : &*at;
-  };
-  if (name.starts_with(of_frame)) {
-    return found(run::frame_figures(), name.substr(of_frame.size()));
-  }
-  const figures::FigureEntry* const counted = found(figures::counted_figures(), name);
-  return counted != nullptr ? counted : found(figures::derived_figures(), name);
-}
-
 }  // namespace
 
 ComparedResult read_run(const std::filesystem::path& path, const std::string& name) {
@@ -68,8 +84,7 @@ ComparedResult read_point(const sweep::SweepReader& sweep, std::int64_t ordinal,
 }
 
 void add_counters(const sweep::SweepRow& row, Figures& figures) {
-  figures::for_each_count(figures::counted_figures(), row.counters,
-                          [&figures](const std::string& name, std::int64_t value) { figures[name] = value; });
+  enter(figures::counted_figures(), row.counters, "", figures);
 }
 
 void add_frame(const sweep::FrameRow& row, ComparedResult& result) {
@@ -78,9 +93,7 @@ void add_frame(const sweep::FrameRow& row, ComparedResult& result) {
   figures["frame.scene"] = row.scene;
   figures["frame.image_hash"] = row.image_hash;
   figures["frame.hit_hash"] = row.hit_hash;
-  figures::for_each_count(
-      run::frame_figures(), row.counters,
-      [&figures](const std::string& name, std::int64_t value) { figures["frame." + name] = value; });
+  enter(run::frame_figures(), row.counters, "frame.", figures);
 }
 
 std::optional<std::int64_t> integer_figure(const ComparedResult& result, const std::string& name) {
@@ -151,6 +164,12 @@ std::int64_t nodes_of(const ComparedResult& result) {
     if (!time) {
       return 0;
     }
+    sum += *time;
+    // A real has 53 bits.
+    rounding += *time >> 63 != 0 ? *time >> 53 : 0;
+  }
+  if (!nodes || !end || *nodes <= 0 || *end < 0) {
+    return 0;
   }
   const sim::Sum off = sum - sim::Sum{*nodes} * *end;
   return off >= -rounding && off <= rounding ? *nodes : 0;

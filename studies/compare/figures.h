@@ -14,8 +14,8 @@
 
 namespace marti::studies::compare {
 
-/// By the names of the catalogue (`marti figures`), those of the frame behind "frame.". A figure is an
-/// integer, a real or a text (a hash, the scene's name).
+/// By the names of the catalogue (`marti figures`), those of the frame behind "frame."; without those that
+/// say how the program worked. A figure is an integer, a real or a text (a hash, the scene's name).
 using Figures = std::map<std::string, tables::Cell>;
 
 struct ComparedResult {

@@ -290,7 +290,8 @@ TwoSweeps two_sweeps(const std::filesystem::path& file_a, const std::filesystem:
   std::ranges::sort(found.only_b);
   sort_points(found);
   take_settings(found);
-  found.counters = figures::counted_figures().size();
+  found.counters = static_cast<std::size_t>(
+      std::ranges::count_if(figures::counted_figures(), &figures::FigureEntry::of_machine));
   found.times = mean_changes(sums);
   for (auto& [name, counter] : sums.counters) {
     found.differing.push_back(std::move(counter));

@@ -37,7 +37,10 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
             {"ps", "time of a miss that waits for no other; distributed: mean over all homes, for node 0",
              Merge::one},
             r.unloaded_miss);
-  parts.add_count("events", {"1", "events of the simulation", Merge::one}, r.events);
+  parts.add_count("events",
+                  {"1", "events that the program handled, fewer where it knew the outcome without them",
+                   Merge::one, Better::program},
+                  r.events);
   parts.add_all("host_", "host", std::optional(r.host));
   const processors::cost::TimeSums time = r.time();
   for (std::size_t i = 0; i < processors::cost::activities; ++i) {

@@ -23,7 +23,7 @@ enum class Merge : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> merge_names = {"sum", "largest", "least", "one", "ratio"};
 
 using Better = sim::Better;
-inline constexpr std::array<std::string_view, 3> better_names = {"lower", "higher", "-"};
+inline constexpr std::array<std::string_view, 4> better_names = {"lower", "higher", "-", "program"};
 
 struct FigureEntry {
   /// A column of the store's table `results` or `frame_results`, or of its view `summary` if it has a
@@ -34,6 +34,9 @@ struct FigureEntry {
   Merge merge = Merge::sum;
   Better better = Better::lower;
   std::optional<Formula> formula{};  ///< std::nullopt: it is counted, an integer
+
+  /// Not if it says how the program worked: then equal machines may differ in it, and it is not compared.
+  [[nodiscard]] bool of_machine() const { return better != Better::program; }
 };
 
 }  // namespace marti::studies::figures

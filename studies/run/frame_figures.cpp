@@ -55,7 +55,10 @@ void add_rays(figures::FigureParts& parts, const FunctionalRun& run) {
 }
 
 void add_log(figures::FigureParts& parts, const processors::program::LogTotals& log) {
-  parts.add_count("log_bytes", of_frame("byte", "words and pixel offsets of the work log"), log.bytes);
+  parts.add_count("log_bytes",
+                  {"byte", "words and pixel offsets of the program's work log", figures::Merge::one,
+                   figures::Better::program},
+                  log.bytes);
   add(parts, "log_branches", "branches visited", log.branches);
   add(parts, "log_leaves", "leaves visited", log.leaves);
   add(parts, "log_tests", "primitives tested", log.tests);
