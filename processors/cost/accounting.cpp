@@ -20,8 +20,8 @@ ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
   return *this;
 }
 
-std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps) {
-  return {steps.branches + steps.leaves + steps.cuts,
+std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps, bool leaf_records) {
+  return {steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts,
           steps.lists,
           steps.tests,
           steps.shades + steps.passes,

@@ -173,8 +173,10 @@ inline std::int64_t& misses_of(NodeStatistics& statistics, memory::RecordKind ki
   return statistics.references.misses[static_cast<std::size_t>(kind)];
 }
 
-/// Records read or written, by kind. The numbers follow from the steps.
-[[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps);
+/// Records that rays read, and pixels written, by kind. The numbers follow from the steps. `leaf_records`:
+/// whether leaves have node records; those of a bounding volume hierarchy have none.
+[[nodiscard]] std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps,
+                                                                        bool leaf_records);
 
 [[nodiscard]] sim::Ticks sum_of(const TimeDivision& time);
 

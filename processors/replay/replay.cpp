@@ -9,6 +9,7 @@
 #include "processors/replay/bounds.h"
 #include "processors/replay/energy_counts.h"
 #include "processors/replay/pipeline.h"
+#include "processors/replay/record_laws.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/replay/space.h"
 #include "processors/walk/left_out.h"
@@ -185,6 +186,8 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
     check_sampled(config);
   }
   MachineResult result = replay_scheme(log, config, options);
+  result.leaf_records = !accel::walks_bvh(log.traversal);
+  check_records(log, config, result);
   work_out_energy(log, config, result);
   return result;
 }

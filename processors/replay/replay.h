@@ -67,6 +67,7 @@ struct MachineResult {
   std::uint64_t events = 0;
   std::optional<energy::EnergyResult> energy;  ///< where MachineConfig::energy is on
   walk::LeftOut left_out;
+  bool leaf_records = true;  ///< whether the tree's leaves have node records
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction
 

@@ -62,7 +62,7 @@ void add_machine(FigureParts& parts, const MachineResult& r) {
 
 void add_references(FigureParts& parts, const MachineResult& r) {
   const processors::cost::ReferenceCounts counts = r.references();
-  const auto records = processors::cost::records_of(r.steps());
+  const auto records = processors::cost::records_of(r.steps(), r.leaf_records);
   parts.add("hits",
             {"1", "lines found in the nodes' own caches, first level; without a cache none", Merge::sum,
              Better::higher},
@@ -72,7 +72,8 @@ void add_references(FigureParts& parts, const MachineResult& r) {
   for (std::size_t kind = 0; kind < memory::record_kinds; ++kind) {
     const std::string prefix = std::string(memory::record_kind_names[kind]) + "_";
     parts.add(prefix, "records",
-              {"1", "records of this kind read by rays; pixels: written", Merge::sum, Better::neither},
+              {"1", "records of this kind read by rays; the leaves of a bvh have none; pixels: written",
+               Merge::sum, Better::neither},
               records[kind]);
     parts.add(prefix, "hits",
               {"1", "lines of this kind found in the first level", Merge::sum, Better::higher},
