@@ -87,10 +87,11 @@ MachineConfig one_node_of(const MachineConfig& config) {
   MachineConfig one = config;
   one.clusters = 1;
   one.nodes = 1;
-  one.scheme = Scheme::image;
   one.count = {};
-  if (config.scheme == Scheme::space) {
-    one.placement = Placement::replicated;
+  if (config.scheme == Scheme::pipeline) {
+    one.scheme = Scheme::image;
+    one.pixels = Pixels::collected;
+    one.host.assignment = Assignment::blocks;
   }
   return one;
 }

@@ -72,12 +72,18 @@ struct LocalMemoryConfig {
   std::int64_t cycles_per_beat = 1;
 };
 
+/// What becomes of a finished pixel in the image scheme. written: its node converts it and writes it to the
+/// frame buffer. collected: the host takes it and no time passes, as it takes contributions where rays move.
+enum class Pixels : std::uint8_t { written, collected };
+inline constexpr std::array<std::string_view, 2> pixels_names = {"written", "collected"};
+
 struct MachineConfig {
   std::uint32_t clusters = 1;
   std::uint32_t nodes = 16;  ///< in each cluster
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   OperationCycles operations;
-  std::uint32_t word_bytes = 4;    ///< what one load or store moves
+  std::uint32_t word_bytes = 4;  ///< what one load or store moves
+  Pixels pixels = Pixels::written;
   std::uint32_t write_buffer = 4;  ///< posted pixel writes a node may have outstanding, at least 1
   std::uint32_t contexts = 1;      ///< packets a node works on by turns, 1 to most_contexts
   std::int64_t switch_cycles = 1;  ///< of the node's clock, to take up another context
@@ -112,9 +118,9 @@ struct MachineConfig {
   }
 };
 
-/// The machine that a speed-up is measured against: `config` with one cluster of one node. A single node
-/// sends rays to nobody, so it traces packets: a pipeline's node with the pipeline's memory, a space-parallel
-/// machine's with the whole database in its own memory.
+/// The machine that a speed-up is measured against: `config` with one cluster of one node, which does the
+/// same work. A pipeline has a node for each stage at least, so its one node traces packets: all that there
+/// are, with the pipeline's memory, and it writes no pixels, as the pipeline does not.
 [[nodiscard]] MachineConfig one_node_of(const MachineConfig& config);
 
 /// The most nodes a machine may have; event keys and node tables are sized by it.

@@ -216,10 +216,12 @@ class BuildingNodes : public Base {
 
   // Writes what the worker has stopped for: a pixel, or a part of the tree.
   void write_next(std::uint32_t node, std::uint32_t worker) {
-    if (!has_room(node)) {
+    const bool pixel = cursors_[node].todo == Todo::step;
+    const bool writes = !pixel || input_.config.pixels == machine::Pixels::written;
+    if (writes && !has_room(node)) {
       return;
     }
-    if (cursors_[node].todo == Todo::step) {
+    if (pixel) {
       write_pixel(node);
     } else {
       write_tree(node, worker);

@@ -125,8 +125,10 @@ class DynamicWalker {
             take_planned(lines, cache, cursor, statistics);
           }
           if (cursor.word == cursor.word_end) {
-            ++statistics.steps.pixels;
-            spend(cursor, ticks_.pixel, 1);
+            if (input_.config.pixels == machine::Pixels::written) {
+              ++statistics.steps.pixels;
+              spend(cursor, ticks_.pixel, 1);
+            }
             return DynamicStop::write;
           }
           take_step(cursor, copy, statistics, *cursor.word++);

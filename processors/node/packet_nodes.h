@@ -222,13 +222,15 @@ class PacketNodes : public NodeArray {
   // Called when the last end of a write becomes known. Derived may replace it.
   void writes_are_known() {}
 
-  // Posts the finished pixel and continues with the next one.
+  // Posts the finished pixel, unless the host collects it, and continues with the next one.
   void write_pixel(std::uint32_t node) {
     Cursor& cursor = cursors_[node];
-    ++statistics_[node].writes;
-    const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
-    make_write(node, input_.layout.address(memory::RecordKind::pixel, pixel),
-               input_.layout.record_bytes(memory::RecordKind::pixel));
+    if (input_.config.pixels == machine::Pixels::written) {
+      ++statistics_[node].writes;
+      const std::uint64_t pixel = std::uint64_t{cursor.y} * input_.log.width + cursor.x;
+      make_write(node, input_.layout.address(memory::RecordKind::pixel, pixel),
+                 input_.layout.record_bytes(memory::RecordKind::pixel));
+    }
     watch_misses(node, place_of(node));
     if (++cursor.x == cursor.packet.x1) {
       cursor.x = cursor.packet.x0;

@@ -113,10 +113,12 @@ class LogWalker {
     tally = {};
   }
 
-  /// Ends a pixel whose steps are done: what is left is to convert and store it.
+  /// Ends a pixel whose steps are done: what is left is to convert and store it, unless the host collects it.
   void finish_pixel(std::uint32_t /*node*/, Cursor& cursor, cost::NodeStatistics& statistics) const {
-    ++statistics.steps.pixels;
-    spend(cursor, ticks_.pixel, 1);
+    if (input_.config.pixels == machine::Pixels::written) {
+      ++statistics.steps.pixels;
+      spend(cursor, ticks_.pixel, 1);
+    }
   }
 
   /// Address and bytes of the reference that missed: a whole line with a cache, else the referenced bytes

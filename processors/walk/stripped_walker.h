@@ -31,6 +31,7 @@ class StrippedWalker {
         clock_(input.config.clock),
         ticks_(cost::step_ticks(input.config, input.log)),
         behind_(input),
+        pixels_written_(input.config.pixels == machine::Pixels::written),
         tags_may_be_late_(stripped_.ways() != 0 && input.sample == nullptr) {}
 
   [[nodiscard]] const cost::StepTicks& ticks() const { return ticks_; }
@@ -76,8 +77,10 @@ class StrippedWalker {
   }
 
   void finish_pixel(std::uint32_t node, Cursor& cursor, cost::NodeStatistics& statistics) {
-    ++statistics.steps.pixels;
-    spend(cursor, ticks_.pixel, 1);
+    if (pixels_written_) {
+      ++statistics.steps.pixels;
+      spend(cursor, ticks_.pixel, 1);
+    }
     if (cursor.x + 1 != cursor.packet.x1 || cursor.y + 1 != cursor.packet.y1) {
       return;
     }
@@ -177,6 +180,7 @@ class StrippedWalker {
   sim::Clock clock_;
   cost::StepTicks ticks_;
   BehindCache behind_;
+  bool pixels_written_;
   bool tags_may_be_late_;
 };
 

@@ -192,6 +192,16 @@ std::span<const FigureEntry> derived_figures() {
   return figures;
 }
 
+std::string_view gain_of(std::string_view loss) {
+  if (loss == "extra_misses") {
+    return "fewer misses, because all caches together hold more than one";
+  }
+  if (loss == "contention") {
+    return "shorter waits for interconnect and banks";
+  }
+  return loss == "overhead" ? "shorter waits for packets and for full queues" : "shorter waits for work";
+}
+
 std::optional<double> figure_of(const MeasuredCounts& counts, std::string_view name) {
   const auto count = [&counts](std::string_view figure, Whose whose) -> std::optional<double> {
     const Counts* const row = whose == Whose::own    ? counts.own

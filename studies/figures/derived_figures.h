@@ -18,6 +18,9 @@ namespace marti::studies::figures {
 inline constexpr std::array<std::string_view, 5> loss_names = {"extra_misses", "contention", "imbalance",
                                                                "overhead", "idle"};
 
+/// Through what n nodes are faster than n times one, where this part is below 0: "fewer misses ...".
+[[nodiscard]] std::string_view gain_of(std::string_view loss);
+
 /// A machine's counts, and those of the machines that it is measured against, where they are known.
 struct MeasuredCounts {
   const Counts* own = nullptr;

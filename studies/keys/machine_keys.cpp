@@ -61,6 +61,10 @@ void declare_node(Schema& schema) {
                  "one processor node; it works in order and stalls on a miss, unless it has other contexts");
   clock(schema, "node.clock", "clock of the node and its cache");
   schema.size("node.word", "4 B", {"1 B", "64 B"}, "what one load or store moves");
+  schema.choice(
+      "node.pixels", "written", names(processors::machine::pixels_names),
+      "image scheme: written: a node converts each finished pixel and writes it to the frame buffer; "
+      "collected: the host takes it in no time, as where rays move");
   schema.integer("node.write_buffer", 4, {1, 4096}, "",
                  "posted pixel writes a node may have outstanding before it stalls");
   declare_context_keys(schema);
@@ -388,12 +392,18 @@ processors::machine::MachineConfig read_machine(sim::Config& config) {
   machine.word_bytes = static_cast<std::uint32_t>(config.size("node.word"));
   const bool image = machine.scheme == processors::machine::Scheme::image;
   if (image) {
-    machine.write_buffer = count(config, "node.write_buffer");
+    machine.pixels = config.choice_as<processors::machine::Pixels>("node.pixels");
   }
   read_costs(config, machine);
   read_layout(config, machine.layout);
   read_cache(config, machine.cache);
   machine.build = read_build(config);
+  if (image && (machine.pixels == processors::machine::Pixels::written ||
+                machine.build.sharing != processors::machine::Sharing::given)) {
+    machine.write_buffer = count(config, "node.write_buffer");
+  }
+  config.mark_unused_reason("node.write_buffer", "nodes write nothing",
+                            image ? "node.pixels" : "machine.scheme");
   read_local(config, machine);
   read_contexts(config, machine);
   machine.banks.interleave = machine.reference_bytes();  // also of the one node that `space` is compared with

@@ -184,7 +184,7 @@ std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::Reco
   result.plan = result.functional.plan;
   const processors::program::WorkLog& log = *result.functional.frame.log;
   refuse_beyond_memory(result);
-  if (result.machine.all_nodes() == 1 && result.machine.scheme == processors::machine::Scheme::image) {
+  if (result.machine.all_nodes() == 1) {
     sim::begin_part(options.meter, "timing the machine", "packets", packets_of(log, result.machine));
     result.timed = watched_replay(record, options, nullptr, result);
     result.one_node = result.timed;

@@ -24,6 +24,16 @@ std::string_view binding(const run::RunResult& r) {
   return least == bounds.interconnect ? "interconnect" : "bank";
 }
 
+// Of a speed-up that is larger than the number of nodes.
+std::string gain_line(const run::RunResult& r) {
+  const auto lost = [&r](std::string_view loss) {
+    return r.figure("lost_" + std::string(loss)).value_or(0.0);
+  };
+  const std::string_view most = *std::ranges::min_element(figures::loss_names, {}, lost);
+  return fmt::format("  more than one node can do {} times, mostly through {}\n", r.machine.all_nodes(),
+                     figures::gain_of(most));
+}
+
 }  // namespace
 
 Json bounds_json(const run::RunResult& r) {
@@ -70,7 +80,7 @@ std::string loss_lines(const run::RunResult& r) {
     const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
     text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, tables::percent(part / n));
   }
-  return text;
+  return *speed_up > n ? text + gain_line(r) : text;
 }
 
 std::string bound_lines(const run::RunResult& r) {

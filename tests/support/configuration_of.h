@@ -45,6 +45,7 @@ inline void assign_node(const processors::machine::MachineConfig& m, Assignments
   to.set("machine.nodes", m.nodes);
   to.set("node.clock", m.clock);
   to.set("node.word", m.word_bytes);
+  to.choose("node.pixels", processors::machine::pixels_names, m.pixels);
   to.set("node.write_buffer", m.write_buffer);
   to.set("node.contexts", m.contexts);
   to.set("node.switch_cycles", m.switch_cycles);

@@ -14,13 +14,15 @@ namespace marti::studies::report {
 
 namespace {
 
-constexpr double longest = 0x1p62;     // of times, ps
+constexpr double longest = 0x1p63;     // of times, ps
 constexpr double most_nodes = 0x1p24;  // of a machine, and so of its clusters
 constexpr double most_figure = 1e12;   // of ratios: far beyond any
 
-// Where the largest part of the lost speed-up went. A part may be negative: a gain over one node.
+// Where the largest part of the lost speed-up went, or the largest part of what is gained beyond the number
+// of nodes. A part may be negative: a gain over one node.
 std::string largest_loss(const tables::RunJson& run) {
   std::pair<std::string, double> largest = {"", 0.0};
+  std::pair<std::string, double> least = {"", 0.0};
   double all = 0.0;
   double gained = 0.0;
   for (const std::string_view loss : figures::loss_names) {
@@ -35,11 +37,18 @@ std::string largest_loss(const tables::RunJson& run) {
     if (*value > largest.second) {
       largest = {name, *value};
     }
+    if (*value < least.second) {
+      least = {name, *value};
+    }
+  }
+  constexpr double told = 0.005;  // what is shown as 0.00 is not told
+  if (all < -told) {
+    return fmt::format("That is more than one node can do as many times, mostly through {}.",
+                       figures::gain_of(least.first));
   }
   if (largest.first.empty() || all <= 0.0) {
     return {};
   }
-  constexpr double told = 0.005;  // what is shown as 0.00 is not told
   return fmt::format("As much as {:.2f} nodes could do is lost, the largest part ({:.2f}) to {}{}.", all,
                      largest.second, words(largest.first),
                      gained < told ? "" : fmt::format("; {:.2f} are gained elsewhere", gained));

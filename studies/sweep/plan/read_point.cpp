@@ -120,11 +120,10 @@ sim::Config one_node_config(const ReadPoint& point) {
   for (const std::string_view key : counting_keys) {
     one.reset(*one.schema().find(key));
   }
-  if (point.machine.scheme != processors::machine::Scheme::image) {
+  if (point.machine.scheme == processors::machine::Scheme::pipeline) {
     set(one, "machine.scheme", std::string("image"));
-  }
-  if (point.machine.scheme == processors::machine::Scheme::space) {
-    set(one, "database.placement", std::string("replicated"));
+    set(one, "node.pixels", std::string("collected"));
+    set(one, "host.assignment", std::string("blocks"));
   }
   return one;
 }

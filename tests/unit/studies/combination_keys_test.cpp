@@ -36,21 +36,6 @@ const Asked& asked_of(Feature feature) { return asked[static_cast<std::size_t>(f
 
 std::string line_of(const Asked& one) { return one.key + " = " + one.value + "\n"; }
 
-// What a run compares with, and what a sweep reads anew as the machine that it compares with.
-TEST(CombinationKeys, SpaceIsComparedWithTheOneNodeThatItsKeysDescribe) {
-  for (const std::string cache : {"line = \"16 B\"", "line = \"64 B\"", "organisation = \"none\""}) {
-    const std::string common = "[cache]\n" + cache + "\n[machine]\n";
-    const processors::machine::MachineConfig space =
-        read_machine_of(common + "scheme = \"space\"\nnodes = 4\n");
-    const processors::machine::MachineConfig one =
-        read_machine_of(common + "nodes = 1\n[database]\nplacement = \"replicated\"\n");
-    const processors::machine::MachineConfig compared = processors::machine::one_node_of(space);
-    EXPECT_EQ(compared.banks.interleave, one.banks.interleave) << cache;
-    EXPECT_EQ(compared.reference_bytes(), one.reference_bytes()) << cache;
-    EXPECT_EQ(compared.placement, one.placement);
-  }
-}
-
 std::string assignment(const Asked& one) { return one.key + "=" + one.value; }
 
 TEST(CombinationKeys, AFileThatAsksForBothIsRefusedAtTheLineOfTheFirst) {

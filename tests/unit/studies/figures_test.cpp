@@ -11,6 +11,7 @@
 #include "studies/run/frame_figures.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/tables/sqlite_connection.h"
+#include "tests/support/random_flow.h"
 #include "tests/support/random_machine.h"
 #include "tests/support/user_error.h"
 
@@ -139,13 +140,44 @@ struct Pair {
   }
 };
 
-Pair time_both(const processors::program::WorkLog& log, MachineConfig machine) {
+Pair time_both(const processors::program::WorkLog& log, const MachineConfig& machine) {
+  const MachineConfig one = processors::machine::one_node_of(machine);
   Pair pair;
   pair.all = processors::replay::replay(log, machine);
   pair.all_counts = counts_of(machine, pair.all);
   pair.one = processors::replay::replay(log, one);
   pair.one_counts = counts_of(one, pair.one);
   return pair;
+}
+
+// A machine of any scheme.
+MachineConfig any_scheme(test::Random& random) {
+  MachineConfig machine = test::random_machine(random);
+  if (const std::uint64_t scheme = random() % 3; scheme == 1) {
+    test::make_random_pipeline(random, machine);
+  } else if (scheme == 2) {
+    test::make_random_space(random, machine);
+  }
+  return machine;
+}
+
+// Whatever the scheme, the machine that a speed-up is measured against takes the same steps.
+TEST(SpeedUp, IsAgainstTheSameWorkOnOneNode) {
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    test::Random random(seed);
+    const processors::program::WorkLog log = test::random_ray_trees(random, 4, 3, 4, 2);
+    MachineConfig machine = any_scheme(random);
+    const Pair pair = time_both(log, machine);
+    const processors::cost::StepCounts one = pair.one.steps();
+    sim::for_each_counter(pair.all.steps(), [&](const auto& counter, std::int64_t value) {
+      EXPECT_EQ(value, counter.value(one)) << counter.name << ", seed " << seed;
+    });
+    if (machine.all_nodes() == 1) {
+      EXPECT_EQ(pair.figure("speed_up"), 1.0) << seed;
+    }
+    EXPECT_TRUE(pair.figure("speed_up") <= machine.all_nodes() || pair.figure("lost_extra_misses") < 0.0)
+        << "only caches do more together than one can do as many times, seed " << seed;
+  }
 }
 
 TEST(LostSpeedUp, AddsUpForEveryMachine) {

@@ -70,10 +70,12 @@ void refuse_what_is_not_modelled(const processors::machine::MachineConfig& confi
   // network, messages, pipeline and space have a meaning only in schemes that are refused; distribution and
   // network only with a placement that is; switch_cycles only with more than one context. Energy changes no
   // time.
-  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, write_buffer, contexts,
-                                switch_cycles, prefetch, layout, cache, l2, placement, distribution, local,
-                                interconnect, banks, packets, host, build, scheme, network, messages,
+  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, pixels, write_buffer,
+                                contexts, switch_cycles, prefetch, layout, cache, l2, placement, distribution,
+                                local, interconnect, banks, packets, host, build, scheme, network, messages,
                                 pipeline, space, count, energy] = config;
+  sim::ensure(pixels == processors::machine::Pixels::written,
+              "a node of the SystemC model writes its pixels");
   sim::ensure(contexts == 1 && !prefetch.on(), "a node of the SystemC model has one context and no prefetch");
   sim::ensure(l2.sharing == processors::machine::SecondLevel::none,
               "the SystemC model has no second-level caches");
