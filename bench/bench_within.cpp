@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/estimates/allowances.h"
 #include "processors/cost/cost_model.h"
 #include "processors/replay/replay.h"
 #include "studies/estimate/within.h"
@@ -80,11 +81,11 @@ void compare(const studies::keys::FrameConfig& frame, const processors::machine:
   const studies::run::FunctionalRun run = whole.finish(whole.trace());
   studies::estimate::Estimate truth;
   truth.value = studies::estimate::figures_of(machine, processors::replay::replay(*run.frame.log, machine));
-  studies::estimate::Estimate truth_of_one = truth;
-  if (machine.nodes > 1) {
-    truth_of_one.value = studies::estimate::figures_of(one, processors::replay::replay(*run.frame.log, one));
-  }
-  studies::estimate::add_speed_up(truth, truth_of_one);
+  const double alone =
+      machine.nodes == 1
+          ? truth.value[Figure::end]
+          : studies::estimate::figures_of(one, processors::replay::replay(*run.frame.log, one))[Figure::end];
+  truth.value[Figure::speed_up] = alone / truth.value[Figure::end];
   const double exact = studies::host::process_cpu_seconds() - begin;
 
   begin = studies::host::process_cpu_seconds();
@@ -116,14 +117,13 @@ void compare(const studies::keys::FrameConfig& frame, const processors::machine:
   ++score.cases;
   for (std::size_t i = 0; i < studies::estimate::figure_count; ++i) {
     const auto figure = static_cast<Figure>(i);
-    const double error =
-        std::abs(studies::estimate::error_of(figure, found.value[figure], truth.value[figure]));
+    const double error = std::abs(bench::error_of(figure, found.value[figure], truth.value[figure]));
     score.covered[i] += error <= found.half_width[figure] + 1e-12 ? 1 : 0;
     score.worst[i] = std::max(score.worst[i], error);
     std::printf("%s %.1f of %.1f %%, ", std::string(studies::estimate::figure_names[i]).c_str(),
                 100.0 * error, 100.0 * found.half_width[figure]);
   }
-  std::printf("%.1f %% traced\n", 100.0 * sampled.traced().pixels);
+  std::printf("%.1f %% traced\n", 100.0 * answer.estimate->traced.pixels);
   std::fflush(stdout);
 }
 

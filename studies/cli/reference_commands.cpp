@@ -29,7 +29,6 @@ sim::Schema all_keys() {
   sim::Schema schema = run::run_schema();
   paper::declare_paper_keys(schema);
   schemes::declare_schemes_keys(schema);
-  error::declare_error_keys(schema);
   error::declare_rendering_error_keys(schema);
   stability::declare_stability_keys(schema);
   sweep::declare_sweep_keys(schema);

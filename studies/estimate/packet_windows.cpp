@@ -19,14 +19,9 @@ std::uint64_t strata_of(std::uint64_t windows, std::uint64_t wanted) {
   return std::max<std::uint64_t>(1, wanted);
 }
 
-template <class Use>
-void for_each_pixel(const processors::machine::Packet& packet, const Use& use) {
-  for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
-    for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
-      use(x, y);
-    }
-  }
-}
+// The first place of the lattice along a side, and how many there are.
+std::uint32_t first_of(std::uint32_t side) { return std::min(PixelLattice::step / 2, side - 1); }
+std::uint32_t count_of(std::uint32_t side) { return (side - 1 - first_of(side)) / PixelLattice::step + 1; }
 
 }  // namespace
 
@@ -79,22 +74,13 @@ void PacketWindows::add_to(processors::program::PixelSet& pixels) const {
   }
 }
 
-PixelLattice::Axis::Axis(std::uint32_t size) {
-  for (std::uint32_t place = std::min(step / 2, size - 1); place < size; place += step) {
-    places.push_back(place);
-  }
-  for (std::uint32_t place = 0; place < size; ++place) {
-    next_to.push_back(std::min(place / step, static_cast<std::uint32_t>(places.size()) - 1));
-  }
-}
-
-PixelLattice::PixelLattice(std::uint32_t width, std::uint32_t height) : columns_(width), rows_(height) {}
+PixelLattice::PixelLattice(std::uint32_t width, std::uint32_t height)
+    : width_(width), height_(height), columns_(count_of(width)), rows_(count_of(height)) {}
 
 std::vector<processors::walk::PixelPlace> PixelLattice::pixels() const {
   std::vector<processors::walk::PixelPlace> pixels;
-  pixels.reserve(size());
-  for (const std::uint32_t y : rows_.places) {
-    for (const std::uint32_t x : columns_.places) {
+  for (std::uint32_t y = first_of(height_); y < height_; y += step) {
+    for (std::uint32_t x = first_of(width_); x < width_; x += step) {
       pixels.push_back({x, y});
     }
   }
@@ -107,21 +93,8 @@ void PixelLattice::add_to(processors::program::PixelSet& pixels) const {
   }
 }
 
-std::vector<double> PixelLattice::expected_of_packets(std::span<const double> values,
-                                                      const processors::machine::PacketList& packets) const {
-  sim::ensure(values.size() == size(), "values of another lattice");
-  std::vector<double> expected(packets.size());
-  for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
-    for_each_pixel(packets[packet], [&](std::uint32_t x, std::uint32_t y) {
-      expected[packet] += values[columns_.places.size() * rows_.next_to[y] + columns_.next_to[x]];
-    });
-  }
-  return expected;
-}
-
 double PixelLattice::half_width(std::span<const double> values) const {
-  sim::ensure(values.size() == size(), "values of another lattice");
-  const std::size_t columns = columns_.places.size();
+  sim::ensure(values.size() == std::size_t{columns_} * rows_, "values of another lattice");
   double squares = 0.0;
   double pairs = 0.0;
   const auto compare = [&](std::size_t a, std::size_t b) {
@@ -130,35 +103,20 @@ double PixelLattice::half_width(std::span<const double> values) const {
     pairs += 1.0;
   };
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i % columns != 0) {
+    if (i % columns_ != 0) {
       compare(i, i - 1);
     }
-    if (i >= columns) {
-      compare(i, i - columns);
+    if (i >= columns_) {
+      compare(i, i - columns_);
     }
   }
   if (pairs == 0.0) {
     return std::numeric_limits<double>::infinity();
   }
   const auto n = static_cast<double>(values.size());
-  const double pixels =
-      static_cast<double>(columns_.next_to.size()) * static_cast<double>(rows_.next_to.size());
+  const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
   constexpr double normal_95 = 1.959963984540054;
   return normal_95 * pixels * std::sqrt((1.0 - n / pixels) * 0.5 * squares / pairs / n);
-}
-
-PixelLattice::ImageWork PixelLattice::expected_of_image(const processors::program::WorkLog& log) const {
-  ImageWork work;
-  for (const processors::walk::PixelPlace& pixel : pixels()) {
-    const std::span<const std::uint32_t> words = log.pixel(pixel.x, pixel.y);
-    work.words += static_cast<double>(words.size());
-    for (std::size_t at = 0; at < words.size(); at += processors::program::step_words(&words[at])) {
-      work.rays += processors::program::step_of(words[at]) == processors::program::Step::ray ? 1.0 : 0.0;
-    }
-  }
-  const double scale =
-      static_cast<double>(log.width) * static_cast<double>(log.height) / static_cast<double>(size());
-  return {scale * work.rays, scale * work.words};
 }
 
 }  // namespace marti::studies::estimate

@@ -7,13 +7,13 @@
 // work the frame and each of its packets are, and takes the nodes' caches from one window to the next.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "processors/machine/packets.h"
 #include "processors/program/pixel_set.h"
-#include "processors/program/work_log.h"
 #include "processors/walk/observer.h"
 
 namespace marti::studies::estimate {
@@ -43,6 +43,7 @@ class PacketWindows {
                 std::uint64_t seed);
 
   [[nodiscard]] std::uint64_t windows() const { return windows_; }
+  [[nodiscard]] std::uint64_t drawn() const { return 2 * strata_.size(); }   ///< of windows()
   [[nodiscard]] std::span<const Stratum> strata() const { return strata_; }  ///< of windows
   [[nodiscard]] std::uint64_t first(std::uint64_t window) const { return window * length_; }
   [[nodiscard]] std::uint64_t end(std::uint64_t window) const {
@@ -83,31 +84,30 @@ class PixelLattice {
   void add_to(processors::program::PixelSet& pixels) const;
   /// Row by row.
   [[nodiscard]] std::vector<processors::walk::PixelPlace> pixels() const;
-  /// What each packet would have if each of its pixels had what the lattice's pixel next to it has. `values`
-  /// are those of pixels(), in their order.
-  [[nodiscard]] std::vector<double> expected_of_packets(std::span<const double> values,
-                                                        const processors::machine::PacketList& packets) const;
+  /// The index, in pixels(), of the one next to a pixel of the image.
+  [[nodiscard]] std::size_t next_to(std::uint32_t x, std::uint32_t y) const {
+    return std::size_t{std::min(y / step, rows_ - 1)} * columns_ + std::min(x / step, columns_ - 1);
+  }
   /// Half of the 95 % interval of the sum over all the image's pixels, by `values`, which are those of
   /// pixels(). The variance of a systematic sample is estimated by the differences of neighbours (K. M.
   /// Wolter, "Introduction to variance estimation", 2nd ed. 2007, section 8.2). Infinite for a single pixel.
   [[nodiscard]] double half_width(std::span<const double> values) const;
-  /// Rays and words of the whole image, by those of the lattice's pixels.
-  struct ImageWork {
-    double rays = 0.0;
-    double words = 0.0;
-  };
-  [[nodiscard]] ImageWork expected_of_image(const processors::program::WorkLog& log) const;
 
  private:
-  // The lattice's columns (or rows) and, for each column of the image, the number of the one next to it.
-  struct Axis {
-    explicit Axis(std::uint32_t size);
-    std::vector<std::uint32_t> places;
-    std::vector<std::uint32_t> next_to;
-  };
-  [[nodiscard]] std::size_t size() const { return columns_.places.size() * rows_.places.size(); }
-  Axis columns_;
-  Axis rows_;
+  std::uint32_t width_;
+  std::uint32_t height_;
+  std::uint32_t columns_;
+  std::uint32_t rows_;
 };
+
+/// Calls use(x, y) for each pixel of a packet.
+template <class Use>
+void for_each_pixel(const processors::machine::Packet& packet, const Use& use) {
+  for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+    for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+      use(x, y);
+    }
+  }
+}
 
 }  // namespace marti::studies::estimate

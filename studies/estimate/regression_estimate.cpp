@@ -1,10 +1,11 @@
 #include "studies/estimate/regression_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "studies/estimate/error_metrics.h"
+#include "sim/error.h"
 
 namespace marti::studies::estimate {
 
@@ -12,34 +13,32 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Calls use(weight, i) for the strata's chosen units, with the number of units that each stands for.
-template <class Use>
-void for_each_weighted(std::span<const Stratum> strata, const Use& use) {
-  std::size_t at = 0;
+// Of how many units each of the strata's chosen ones stands for.
+std::vector<double> weights_of(std::span<const Stratum> strata) {
+  std::vector<double> weights;
   for (const Stratum& stratum : strata) {
-    const double weight = static_cast<double>(stratum.size()) / static_cast<double>(stratum.chosen.size());
-    for (std::size_t i = 0; i < stratum.chosen.size(); ++i) {
-      use(weight, at++);
-    }
+    const auto chosen = static_cast<double>(stratum.chosen.size());
+    weights.insert(weights.end(), stratum.chosen.size(), static_cast<double>(stratum.size()) / chosen);
   }
+  return weights;
 }
 
 // What an expected miss adds to what the hit time explains already: the slope of `measured`
 // over the misses, both less what is proportional to the hit time. 0 where all misses are proportional to it.
-double slope_of_misses(std::span<const Stratum> strata, std::span<const KnownWork> known,
+double slope_of_misses(std::span<const double> weights, std::span<const KnownWork> known,
                        std::span<const double> measured, double misses_of_time) {
   double products = 0.0;
   double squares = 0.0;
   double all_squares = 0.0;
-  for_each_weighted(strata, [&](double weight, std::size_t i) {
+  for (std::size_t i = 0; i < known.size(); ++i) {
     const KnownWork& unit = known[i];
     if (unit.hit_time > 0.0) {
       const double beside = unit.misses - misses_of_time * unit.hit_time;
-      products += weight * beside * measured[i] / unit.hit_time;
-      squares += weight * beside * beside / unit.hit_time;
-      all_squares += weight * unit.misses * unit.misses / unit.hit_time;
+      products += weights[i] * beside * measured[i] / unit.hit_time;
+      squares += weights[i] * beside * beside / unit.hit_time;
+      all_squares += weights[i] * unit.misses * unit.misses / unit.hit_time;
     }
-  });
+  }
   constexpr double rounding = 1e-12;
   return squares > rounding * all_squares ? products / squares : 0.0;
 }
@@ -50,11 +49,12 @@ RegressionEstimate regression_estimate(std::span<const Stratum> strata, std::spa
                                        std::span<const double> measured, const KnownWork& all) {
   double sum_measured = 0.0;
   KnownWork sum;
-  for_each_weighted(strata, [&](double weight, std::size_t i) {
-    sum_measured += weight * measured[i];
-    sum.hit_time += weight * known[i].hit_time;
-    sum.misses += weight * known[i].misses;
-  });
+  const std::vector<double> weights = weights_of(strata);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum_measured += weights[i] * measured[i];
+    sum.hit_time += weights[i] * known[i].hit_time;
+    sum.misses += weights[i] * known[i].misses;
+  }
   RegressionEstimate estimate;
   estimate.total = sum_measured;
   estimate.residues.assign(measured.size(), 0.0);
@@ -66,7 +66,7 @@ RegressionEstimate regression_estimate(std::span<const Stratum> strata, std::spa
     return estimate;
   }
   const double misses_of_time = sum.misses / sum.hit_time;
-  const double slope = slope_of_misses(strata, known, measured, misses_of_time);
+  const double slope = slope_of_misses(weights, known, measured, misses_of_time);
   estimate.counts_for = {sum_measured / sum.hit_time - slope * misses_of_time, slope};
   const auto counted = [&](const KnownWork& work) {
     return estimate.counts_for.hit_time * work.hit_time + estimate.counts_for.misses * work.misses;
@@ -81,6 +81,22 @@ RegressionEstimate regression_estimate(std::span<const Stratum> strata, std::spa
     estimate.half_width = half_width_of(strata, estimate.residues, estimate.degrees) / estimate.total;
   }
   return estimate;
+}
+
+double student_95(std::uint64_t degrees) {
+  sim::ensure(degrees > 0, "Student's distribution has no 0 degrees of freedom");
+  constexpr std::array table = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                                2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
+                                2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
+  if (degrees <= table.size()) {
+    return table[degrees - 1];
+  }
+  // Cornish-Fisher expansion around the normal point (M. Abramowitz, I. A. Stegun, 1964, formula 26.7.5).
+  constexpr double z = 1.959963984540054;
+  const auto n = static_cast<double>(degrees);
+  const double z3 = z * z * z;
+  const double z5 = z3 * z * z;
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n);
 }
 
 double half_width_of(std::span<const Stratum> strata, std::span<const double> residues,

@@ -35,6 +35,9 @@ struct RegressionEstimate {
                                                      std::span<const KnownWork> known,
                                                      std::span<const double> measured, const KnownWork& all);
 
+/// The two-sided 95 % point of Student's distribution, from 1 degree of freedom on (12.706, 4.303, ...).
+[[nodiscard]] double student_95(std::uint64_t degrees);
+
 /// Half of the 95 % interval of a total whose chosen units have these residues.
 [[nodiscard]] double half_width_of(std::span<const Stratum> strata, std::span<const double> residues,
                                    std::uint64_t degrees);

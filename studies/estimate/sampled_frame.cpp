@@ -1,6 +1,10 @@
 #include "studies/estimate/sampled_frame.h"
 
+#include <span>
 #include <utility>
+#include <vector>
+
+#include "processors/program/work_log.h"
 
 namespace marti::studies::estimate {
 
@@ -10,35 +14,28 @@ SampledFrame::SampledFrame(std::uint32_t width, std::uint32_t height, Trace trac
       traced_(width, height),
       pixels_(static_cast<double>(width) * height) {}
 
-processors::program::PixelSet SampledFrame::set_with_lattice() const {
+processors::program::PixelSet SampledFrame::set_with(const PacketWindows* windows) const {
   processors::program::PixelSet set = traced_;
   lattice_.add_to(set);
+  if (windows != nullptr) {
+    windows->add_to(set);
+  }
   return set;
-}
-
-processors::program::PixelSet SampledFrame::set_with(const PacketWindows& windows) const {
-  processors::program::PixelSet set = set_with_lattice();
-  windows.add_to(set);
-  return set;
-}
-
-double SampledFrame::share_with(const PacketWindows& windows) const {
-  return static_cast<double>(set_with(windows).count()) / pixels_;
 }
 
 TracedPart SampledFrame::traced() const {
-  const auto [rays, words] = lattice_.expected_of_image(*frame_->log);
-  return {static_cast<double>(traced_.count()) / pixels_, rays, 4.0 * (words + pixels_)};
-}
-
-const processors::program::WorkLog& SampledFrame::with_lattice() {
-  trace(set_with_lattice());
-  return *frame_->log;
-}
-
-const processors::program::WorkLog& SampledFrame::with(const PacketWindows& windows) {
-  trace(set_with(windows));
-  return *frame_->log;
+  double rays = 0.0;
+  double words = 0.0;
+  const std::vector<processors::walk::PixelPlace> places = lattice_.pixels();
+  for (const processors::walk::PixelPlace& place : places) {
+    const std::span<const std::uint32_t> pixel = frame_->log->pixel(place.x, place.y);
+    words += static_cast<double>(pixel.size());
+    for (std::size_t at = 0; at < pixel.size(); at += processors::program::step_words(&pixel[at])) {
+      rays += processors::program::step_of(pixel[at]) == processors::program::Step::ray ? 1.0 : 0.0;
+    }
+  }
+  const double scale = pixels_ / static_cast<double>(places.size());
+  return {static_cast<double>(traced_.count()) / pixels_, scale * rays, 4.0 * (scale * words + pixels_)};
 }
 
 processors::program::Frame SampledFrame::whole() && {
@@ -48,14 +45,14 @@ processors::program::Frame SampledFrame::whole() && {
   return std::move(*frame_);
 }
 
-void SampledFrame::trace(const processors::program::PixelSet& wanted) {
+const processors::program::WorkLog& SampledFrame::trace(const processors::program::PixelSet& wanted) {
   processors::program::PixelSet missing = wanted;
   missing.remove(traced_);
-  if (frame_ && missing.count() == 0) {
-    return;
+  if (!frame_ || missing.count() != 0) {
+    frame_ = trace_(missing, frame_ ? &*frame_ : nullptr);
+    traced_ = wanted;
   }
-  frame_ = trace_(missing, frame_ ? &*frame_ : nullptr);
-  traced_ = wanted;
+  return *frame_->log;
 }
 
 SampledFrame sampled_frame(const run::PreparedFrame& prepared) {

@@ -31,11 +31,13 @@ class SampledFrame {
 
   [[nodiscard]] const PixelLattice& lattice() const { return lattice_; }
   /// The share of all pixels that would be traced after with(windows).
-  [[nodiscard]] double share_with(const PacketWindows& windows) const;
+  [[nodiscard]] double share_with(const PacketWindows& windows) const {
+    return static_cast<double>(set_with(&windows).count()) / pixels_;
+  }
   /// The log of the lattice and of all that was traced before.
-  const processors::program::WorkLog& with_lattice();
+  const processors::program::WorkLog& with_lattice() { return trace(set_with(nullptr)); }
   /// The log of the lattice, of these windows and of all that was traced before.
-  const processors::program::WorkLog& with(const PacketWindows& windows);
+  const processors::program::WorkLog& with(const PacketWindows& windows) { return trace(set_with(&windows)); }
   /// with() must have been called.
   [[nodiscard]] TracedPart traced() const;
   /// Gives away what is traced. with() must have been called.
@@ -44,9 +46,9 @@ class SampledFrame {
   [[nodiscard]] processors::program::Frame whole() &&;
 
  private:
-  [[nodiscard]] processors::program::PixelSet set_with_lattice() const;
-  [[nodiscard]] processors::program::PixelSet set_with(const PacketWindows& windows) const;
-  void trace(const processors::program::PixelSet& wanted);
+  // What is traced, with the lattice and, if not null, these windows.
+  [[nodiscard]] processors::program::PixelSet set_with(const PacketWindows* windows) const;
+  const processors::program::WorkLog& trace(const processors::program::PixelSet& wanted);
 
   PixelLattice lattice_;
   Trace trace_;

@@ -9,8 +9,8 @@
 
 #include "processors/machine/machine_config.h"
 #include "sim/config.h"
+#include "studies/estimate/sample_machine.h"
 #include "studies/estimate/sampled_frame.h"
-#include "studies/estimate/simulator_sample.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/run/run_result.h"
 
@@ -32,6 +32,7 @@ struct EstimatedRun {
   std::uint64_t of_windows = 0;
   std::uint64_t packets = 0;  ///< of the windows drawn
   std::uint64_t of_packets = 0;
+  TracedPart traced;
 };
 
 /// An estimate, or the reason why only an exact run will do.
@@ -42,8 +43,8 @@ struct WithinAnswer {
 
 /// Traces and times samples of `frame`, each larger than the one before, until the half-widths of frame time
 /// and speed-up are at most `tolerance`. Gives up as soon as an exact run is expected to be cheaper: what was
-/// traced till then is not lost. `seed` is that of the windows drawn. Both not_sampled() must be
-/// std::nullopt.
+/// traced till then is not lost. `seed` is that of the windows drawn. Neither frame nor machine may be one
+/// that not_sampled() refuses.
 [[nodiscard]] WithinAnswer estimate_within(SampledFrame& frame,
                                            const processors::machine::PacketList& packets,
                                            const processors::machine::MachineConfig& machine,
@@ -53,5 +54,12 @@ struct WithinAnswer {
 /// and the reason for it; as JSON, an object with `estimate`, or the exact run's result. `exact`: how an
 /// exact run is made. Throws UserError as run() does.
 [[nodiscard]] std::string run_within(sim::Config& config, double tolerance, bool json, run::RunOptions exact);
+
+/// What scene_summary_of() says, what was left out, and every figure with its error bar.
+[[nodiscard]] std::string estimate_text(const run::RunResult& result, const EstimatedRun& run,
+                                        double tolerance);
+/// The figures as docs/error.md describes them.
+[[nodiscard]] std::string estimate_json(const run::RunResult& result, const EstimatedRun& run,
+                                        double tolerance);
 
 }  // namespace marti::studies::estimate

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "processors/machine/packets.h"
+#include "processors/node/packet_schedule.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "processors/theory/closed_network.h"
 #include "sim/mapped.h"
 #include "sim/mix.h"
-#include "studies/estimate/packet_schedule.h"
 #include "studies/estimate/within.h"
 
 namespace marti::studies::explore {
@@ -60,7 +60,7 @@ double handed_out(const MachineConfig& machine, const std::vector<double>& words
       sim::mapped(words, [&](const double each) { return sim::Ticks{std::llround(work * each / all)}; });
   // More nodes than packets would have nothing to do.
   const auto nodes = static_cast<std::uint32_t>(std::min<std::size_t>(machine.nodes, words.size()));
-  return static_cast<double>(estimate::schedule_packets(machine.host, nodes, times));
+  return static_cast<double>(processors::node::schedule_packets(machine.host, nodes, times));
 }
 
 }  // namespace

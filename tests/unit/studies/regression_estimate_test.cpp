@@ -161,5 +161,16 @@ TEST(RegressionEstimate, WithoutAnythingKnownOrMeasuredNothingIsSure) {
             3.0);
 }
 
+TEST(Student, KnownPoints) {
+  EXPECT_NEAR(student_95(1), 12.706, 5e-4);
+  EXPECT_NEAR(student_95(10), 2.228, 5e-4);
+  EXPECT_NEAR(student_95(40), 2.0211, 5e-4);
+  EXPECT_NEAR(student_95(120), 1.9799, 5e-4);
+  EXPECT_NEAR(student_95(1'000'000), 1.95996, 5e-4);
+  for (std::uint64_t n = 1; n < 200; ++n) {
+    EXPECT_GT(student_95(n), student_95(n + 1)) << n;
+  }
+}
+
 }  // namespace
 }  // namespace marti::studies

@@ -1,4 +1,4 @@
-#include "studies/estimate/packet_schedule.h"
+#include "processors/node/packet_schedule.h"
 
 #include <algorithm>
 #include <functional>
@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-namespace marti::studies::estimate {
+namespace marti::processors::node {
 
-sim::Ticks schedule_packets(const processors::machine::HostConfig& config, std::uint32_t nodes,
+sim::Ticks schedule_packets(const machine::HostConfig& config, std::uint32_t nodes,
                             std::span<const sim::Ticks> packets) {
-  processors::node::Host host(config, packets.size(), nodes);
+  Host host(config, packets.size(), nodes);
   using Free = std::pair<sim::Ticks, std::uint32_t>;  // when a node is free, and which node
   std::priority_queue<Free, std::vector<Free>, std::greater<>> free;
   for (std::uint32_t node = 0; node < nodes; ++node) {
@@ -28,4 +28,4 @@ sim::Ticks schedule_packets(const processors::machine::HostConfig& config, std::
   return end;
 }
 
-}  // namespace marti::studies::estimate
+}  // namespace marti::processors::node

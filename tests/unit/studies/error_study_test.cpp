@@ -10,6 +10,7 @@
 #include "accel/structure.h"
 #include "scenes/procedural.h"
 #include "studies/error/error_keys.h"
+#include "studies/error/median_interval.h"
 #include "studies/error/rendering.h"
 #include "studies/error/rendering_tables.h"
 #include "studies/keys/machine_keys.h"
@@ -235,6 +236,16 @@ TEST(RenderingError, FloatsChangeLittleInMostPixels) {
   EXPECT_GT(errors.plain.changed, 0U);
   EXPECT_LT(errors.median_change, 1e-5);
   EXPECT_LT(errors.plain.visible, 20U * 16U / 20U) << "but for a few at edges";
+}
+
+TEST(Median, OfOddAndEven) {
+  const MedianInterval odd = median_interval({5.0, 1.0, 3.0});
+  EXPECT_EQ(odd.median, 3.0);
+  EXPECT_EQ(odd.low, 1.0);
+  EXPECT_EQ(odd.high, 5.0);
+  EXPECT_DOUBLE_EQ(odd.confidence, 0.75);
+  EXPECT_EQ(median_interval({1.0, 2.0}).median, 1.5);
+  EXPECT_EQ(median_interval({4.0}).confidence, 0.0);
 }
 
 sim::Config config_of(const std::string& text) {

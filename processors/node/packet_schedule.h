@@ -8,10 +8,10 @@
 #include "processors/node/host.h"
 #include "sim/time.h"
 
-namespace marti::studies::estimate {
+namespace marti::processors::node {
 
 /// Assignment is dynamic; a packet's time counts from its start. Without packets, 0.
-[[nodiscard]] sim::Ticks schedule_packets(const processors::machine::HostConfig& host, std::uint32_t nodes,
+[[nodiscard]] sim::Ticks schedule_packets(const machine::HostConfig& host, std::uint32_t nodes,
                                           std::span<const sim::Ticks> packets);
 
-}  // namespace marti::studies::estimate
+}  // namespace marti::processors::node

@@ -6,19 +6,21 @@
 
 #include "processors/machine/machine_config.h"
 #include "processors/program/work_log.h"
+#include "processors/replay/replay.h"
 #include "processors/walk/kept_visits.h"
+#include "studies/estimate/machine_figures.h"
 #include "studies/estimate/packet_windows.h"
 #include "studies/estimate/regression_estimate.h"
-#include "studies/estimate/simulator_figures.h"
 
 namespace marti::studies::estimate {
+
+/// The figures of a replay of all packets.
+[[nodiscard]] MachineFigures figures_of(const processors::machine::MachineConfig& machine,
+                                        const processors::replay::MachineResult& result);
 
 /// Packets of a window, for a machine of so many nodes: one for each node, and enough for a window's work to
 /// be more than chance.
 [[nodiscard]] std::uint64_t window_length(std::uint32_t nodes);
-
-/// Throws UserError with the reason when a machine cannot be estimated from a sample.
-void check_sample(const processors::machine::MachineConfig& machine);
 
 /// What the pixels of the lattice say of a frame on machines whose nodes and caches are those of one, however
 /// many nodes they have.
@@ -65,7 +67,7 @@ struct SampledMachine {
 /// log has of the packets left out since its last one (processors/walk/packet_sample.h). The frame time is
 /// that of a host that hands out packets of the estimated times, or the time that the interconnect needs for
 /// all transfers, if that is longer. If all windows are drawn and the log is whole, the result is exact.
-/// check_sample() must not refuse the machine. `visits`: see replay::ReplayOptions.
+/// not_sampled() must not refuse the machine. `visits`: see replay::ReplayOptions.
 [[nodiscard]] SampledMachine sample_machine(const processors::program::WorkLog& log,
                                             const processors::machine::MachineConfig& machine,
                                             const PacketWindows& windows, const LatticeWork& work,
@@ -80,14 +82,11 @@ struct SampledRun {
   MachineFigures lattice;
 };
 
-/// The speed-up of a machine over the same machine with one node, both by the same windows. Most of what is
-/// chance in the time of one is in that of the other, too.
-[[nodiscard]] SampledRun add_one_node(const SampledMachine& machine, const SampledMachine& one_node,
-                                      const PacketWindows& windows, const LatticeWork& work);
-
-/// All of the above. Throws UserError for a machine that check_sample() refuses.
-[[nodiscard]] SampledRun estimate_by_sample(const processors::program::WorkLog& log,
-                                            const processors::machine::MachineConfig& machine,
-                                            const PacketWindows& windows, const PixelLattice& lattice);
+/// Adds the same machine with one node, by the same windows, and the speed-up over it. Most of what is chance
+/// in the time of one is in that of the other, too.
+[[nodiscard]] SampledRun with_one_node(const SampledMachine& sampled, const processors::program::WorkLog& log,
+                                       const processors::machine::MachineConfig& machine,
+                                       const PacketWindows& windows, const LatticeWork& work,
+                                       processors::walk::KeptVisits& visits);
 
 }  // namespace marti::studies::estimate

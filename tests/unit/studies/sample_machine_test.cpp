@@ -1,5 +1,5 @@
 // Samples of packets: which are drawn, what is estimated from them, and whether the intervals hold.
-#include "studies/estimate/simulator_sample.h"
+#include "studies/estimate/sample_machine.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,16 +10,16 @@
 #include <numeric>
 #include <optional>
 #include <random>
-#include <string>
 #include <vector>
 
+#include "bench/estimates/allowances.h"
 #include "plain_machine.h"
+#include "processors/node/packet_schedule.h"
 #include "processors/passes/pixel_figures.h"
 #include "processors/replay/replay.h"
 #include "sim/mix.h"
 #include "studies/estimate/sampled_frame.h"
 #include "tests/support/random_machine.h"
-#include "tests/support/user_error.h"
 
 namespace marti::studies {
 
@@ -167,17 +167,19 @@ RC_GTEST_PROP(Lattice, ExpectsTheTimeOfThePixelNextToEach, (std::uint64_t seed))
   RC_ASSERT(set.count() == static_cast<std::uint64_t>(std::count(columns.begin(), columns.end(), true) *
                                                       std::count(rows.begin(), rows.end(), true)));
   const PacketList packets(log.width, log.height, {1, 1});
-  const std::vector<double> expected = lattice.expected_of_packets(times, packets);
   for (std::uint64_t packet = 0; packet < packets.size(); ++packet) {
     const processors::machine::Packet at = packets[packet];
     // A cell's first column, and row, is as far from the pixel of the cell before.
     if (at.x0 % 8 != 0 && at.y0 % 8 != 0) {
       const std::size_t next = std::size_t{nearest(at.y0, rows)} * log.width + nearest(at.x0, columns);
-      RC_ASSERT(expected[packet] == of_image[next]);
+      RC_ASSERT(times[lattice.next_to(at.x0, at.y0)] == of_image[next]);
     }
   }
   const double words = words_of_lattice / static_cast<double>(set.count()) * log.width * log.height;
-  RC_ASSERT(std::abs(lattice.expected_of_image(log).words - words) <= 1e-9 * words);
+  SampledFrame frame = sampled_frame(log);
+  (void)frame.with_lattice();
+  const double bytes = 4.0 * (words + log.width * log.height);
+  RC_ASSERT(std::abs(frame.traced().log_bytes - bytes) <= 1e-9 * bytes);
 }
 
 // Images of patches of random sizes, times and places, with noise: the lattice's mean and the image's.
@@ -265,6 +267,38 @@ RC_GTEST_PROP(PixelFigures, AreThoseOfPacketsOfOnePixel, (std::uint64_t seed)) {
   }
 }
 
+// The frame time of a host that hands out packets, and the replay's.
+RC_GTEST_PROP(Schedule, OfIndependentPacketsIsTheReplay, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const processors::program::WorkLog log = test::random_log(random, 12, 10);
+  MachineConfig machine = test::plain_machine(random);
+  machine.host.occupancy_cycles = test::pick(random, 0, 50);
+  machine.interconnect.kind = memory::InterconnectKind::ideal;
+  const std::uint64_t packets = processors::machine::PacketList(12, 10, machine.packets).size();
+  std::vector<std::uint64_t> all(packets);
+  std::iota(all.begin(), all.end(), 0);
+  const processors::walk::PacketSample sample(all, packets, 0);
+  const processors::replay::MachineResult result =
+      processors::replay::replay(log, machine, {.sample = &sample});
+  std::vector<sim::Ticks> times;
+  for (const processors::walk::PacketFigures& figures : result.packet_figures) {
+    times.push_back(figures.time);
+  }
+  sim::Ticks finish = 0;
+  for (const processors::cost::NodeStatistics& node : result.nodes) {
+    finish = std::max(finish, node.finish);
+  }
+  RC_ASSERT(processors::node::schedule_packets(machine.host, machine.nodes, times) == finish);
+}
+
+SampledRun estimate_by_sample(const WorkLog& log, const MachineConfig& machine, const PacketWindows& windows,
+                              const PixelLattice& lattice) {
+  processors::walk::KeptVisits visits;
+  const LatticeWork work(log, machine, lattice, windows.packets(), visits);
+  return with_one_node(sample_machine(log, machine, windows, work, visits), log, machine, windows, work,
+                       visits);
+}
+
 RC_GTEST_PROP(Sample, OfEverythingIsExact, (std::uint64_t seed)) {
   test::Random random(seed);
   const WorkLog log = test::random_log(random, 12, 10);
@@ -323,7 +357,6 @@ RC_GTEST_PROP(Sample, DoesNotLookAtOtherPixels, (std::uint64_t seed)) {
   // Words anywhere else change what caches are warmed with, but not what the windows do.
   const SampledRun whole = estimate_by_sample(log, machine, windows, frame.lattice());
   RC_ASSERT(run.machine.references == whole.machine.references);
-  RC_ASSERT(run.machine.events > 0U);
   RC_ASSERT(std::isfinite(run.machine.value[Figure::end]));
 }
 
@@ -346,7 +379,7 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
       const Estimate estimate =
           estimate_by_sample(frame.with(windows), machine, windows, frame.lattice()).machine;
       const auto holds = [&](Figure figure) {
-        return std::abs(error_of(figure, estimate.value[figure], exact[figure])) <=
+        return std::abs(bench::error_of(figure, estimate.value[figure], exact[figure])) <=
                estimate.half_width[figure];
       };
       times += holds(Figure::end) ? 1 : 0;
@@ -355,20 +388,6 @@ TEST(Sample, IntervalsOfManySeedsCoverTheTruth) {
     EXPECT_GE(times, 90) << strata;
     EXPECT_GE(misses, 90) << strata;
   }
-}
-
-TEST(Sample, MachinesThatCannotBeSampledAreRefused) {
-  test::Random random(1);
-  const auto refused = [&](auto change, const std::string& word) {
-    MachineConfig machine = test::plain_machine(random);
-    change(machine);
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, word, test::user_error_of([&] { check_sample(machine); }));
-  };
-  refused([](MachineConfig& m) { m.scheme = processors::machine::Scheme::space; }, "scheme");
-  refused([](MachineConfig& m) { m.contexts = 2; }, "context");
-  refused([](MachineConfig& m) { m.build.sharing = processors::machine::Sharing::shared; }, "build.sharing");
-  refused([](MachineConfig& m) { m.clusters = 2; }, "cluster");
-  refused([](MachineConfig& m) { m.placement = processors::machine::Placement::replicated; }, "placement");
 }
 
 }  // namespace
