@@ -37,7 +37,8 @@ constexpr std::array<Examples, 25> table = {{
       "marti study schemes configs/schemes.toml --set 'schemes.nodes=[1,4,16]' -o out/schemes"}},
     {"study error",
      {"marti study error configs/error.toml -o out/error",
-      "marti study error configs/error.toml --set 'error.families=[\"simulator\"]' -o out/error"}},
+      "marti study error configs/error.toml --set image.integrator=path --set scene.source=room:8 -o "
+      "out/paths"}},
     {"study stability",
      {"marti study stability", "marti study stability --set stability.rays=1000 -o out/stability"}},
     {"sweep",

@@ -14,7 +14,6 @@
 #include "studies/cli/man_page.h"
 #include "studies/cli/shell_completion.h"
 #include "studies/error/error_keys.h"
-#include "studies/error/rendering_keys.h"
 #include "studies/keys/combination_table.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
@@ -29,7 +28,7 @@ sim::Schema all_keys() {
   sim::Schema schema = run::run_schema();
   paper::declare_paper_keys(schema);
   schemes::declare_schemes_keys(schema);
-  error::declare_rendering_error_keys(schema);
+  error::declare_error_keys(schema);
   stability::declare_stability_keys(schema);
   sweep::declare_sweep_keys(schema);
   return schema;

@@ -42,11 +42,8 @@ marti study frames -- "$source/configs/animation.toml" --set image.width=16 --se
   --set frames.count=2 --set frames.rate=2 -o frames
 marti study schemes -- "$source/configs/schemes.toml" "${small[@]}" --set 'schemes.nodes=[1,4]' \
   --set 'schemes.cell_levels=[2,4]' --set schemes.stage_nodes=6 -o schemes
-marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set error.repeats=1 \
-  --set scene.source=gears:1 --set error.rendering.side=12 --set 'error.rendering.samples=[1,2]' \
-  --set error.rendering.reference_samples=32 --set error.rendering.repeats=1 \
-  --set 'error.scenes=["tetra:3"]' --set 'error.sides=[16,64]' --set packets.width=2 --set packets.height=2 \
-  --set 'error.nodes=[1,4]' --set 'error.cache_sizes=["2 KiB"]' -o error
+marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set scene.source=gears:1 \
+  --set error.repeats=1 --set error.side=12 --set 'error.samples=[1,2]' --set 'error.depths=[1]' -o error
 marti study stability -- --set stability.rays=100 --set stability.nodes=64 \
   --set 'stability.only=["leaks-at-1e6","zero-latencies"]' -o stability
 marti scene list --

@@ -12,27 +12,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The shipped study with scenes and machines that take no time.
+// The shipped study with a scene that takes no time.
 const std::string small_errors =
     shipped("error.toml") +
-    " --set error.sides=[16,64] --set packets.width=2 --set packets.height=2 --set "
-    "'error.scenes=[\"tetra:2\",\"teapot:2:pot\"]'"
-    " --set error.nodes=[1,2,4] --set 'error.cache_sizes=[\"32 B\",\"1 KiB\",\"64 KiB\"]' --set "
-    "error.repeats=2 --set scene.source=gears:1 --set error.rendering.side=12 "
-    "--set error.rendering.samples=[1,2] --set error.rendering.reference_samples=32 "
-    "--set error.rendering.repeats=2";
+    " --set scene.source=gears:1 --set image.width=64 --set image.height=48 --set image.samples=2 --set "
+    "error.within=[0.1] --set error.divisors=[4] --set error.side=12 --set error.samples=[1,2,4] --set "
+    "error.depths=[1,2] --set error.repeats=2";
 
-TEST(StudyError, WritesTheSameTablesAgainButForRunTimes) {
+TEST(StudyError, AnswersFirstAndWritesOnePicture) {
   const TemporaryDirectory directory;
   EXPECT_GE(expect_study("error " + small_errors, directory.path(),
-                         {"16 windows", "32 windows", "all nodes walked", "node counts, linear",
-                          "paper's formula", "The fastest method for an error", "results.sqlite"},
-                         {"host_error_time.csv", "error_measured.csv", "host_error_front.vl.json"}),
-            7);
-  // Exact replay has no error.
-  const std::string methods = read(directory.path() / "a" / "error_methods.csv");
-  EXPECT_NE(methods.find("\nexact,replay,36,0.0,0.0,0.0,,0.0,0.0,0.0,0.0,1.0,0.0,0.0,"), std::string::npos)
-      << methods;
+                         {"Frame time: ", "Image, samples: ", "The error falls as samples^",
+                          "by an exact run", "smaller image", "fewer samples", "voxel cut", "results.sqlite"},
+                         {"host_error.csv", "host_error.vl.json", "host_error_answer.csv"}),
+            2);
+  // The page begins with the study's answer.
+  const fs::path page = directory.path() / "page.html";
+  ASSERT_EQ(marti("report " + quoted(directory.path() / "a") + " -o " + quoted(page)).status, 0);
+  EXPECT_NE(read(page).find("Frame time, in "), std::string::npos);
 }
 
 TEST(StudyError, WrongInputIsTwo) {
@@ -41,19 +38,12 @@ TEST(StudyError, WrongInputIsTwo) {
     expect_refused("study error " + small_errors + " -o " + quoted(directory.path() / "out") + options,
                    complaint);
   };
-  refused(" --set error.nodes=[2,4]", "error.nodes");
-  refused(" --set error.sides=[]", "error.sides");
-  refused(" --set error.sides=[0]", "error.sides");
-  refused(" --set error.scenes=[]", "error.scenes");
-  refused(" --set error.cache_sizes=[]", "error.cache_sizes");
-  refused(" --set 'error.cache_sizes=[\"48 B\"]'", "error.cache_sizes");
   refused(" --set error.repeats=0", "error.repeats");
-  refused(" --set error.families=[]", "error.families");
-  refused(" --set error.families=[\"sim\"]", "error.families");
-  refused(" --set error.rendering.reference_samples=16", "error.rendering.reference_samples");
-  refused(" --set cache.replacement=fifo", "LRU");
-  refused(" --set machine.scheme=space", "image");
-  refused(" --set error.scene=x", "error.scenes");
+  refused(" --set error.samples=[0]", "error.samples");
+  refused(" --set error.within=[0.0]", "error.within");
+  refused(" --set error.divisors=[1]", "error.divisors");
+  refused(" --set image.voxel_cut=2", "error.voxel_cuts");
+  refused(" --set error.scene=x", "error.s");
 }
 
 const std::string machine =

@@ -32,8 +32,7 @@ std::vector<sim::EffectiveValue> read_run(std::string_view text) {
 void read_error_study(std::string_view text) {
   static const sim::Schema schema = studies::error::error_schema();
   sim::Config config = sim::Config::from_text(schema, text, "fuzz.toml");
-  const studies::keys::FrameConfig frame = studies::keys::read_frame(config);
-  (void)studies::error::read_rendering_error(config, frame);
+  (void)studies::error::read_error(config);
 }
 
 void read_sweep(std::string_view text) {

@@ -128,6 +128,9 @@ void take_settings(const tables::Table& table, ReportData& report) {
 void take_text(const fs::path& file, ReportData& report) {
   report.text = sim::read_file(file, largest_text);
   std::string first = report.text.substr(0, report.text.find("\n\n"));
+  if (first.ends_with('\n')) {
+    first.pop_back();
+  }
   constexpr std::size_t longest = 400;
   if (first.empty() || first.size() > longest) {
     return;
@@ -202,6 +205,14 @@ ReportData read_study_report(const fs::path& directory) {
     tables::Table table = read_table(connection, file, name, descriptions, rows_left);
     if (name == "provenance") {
       take_settings(table, report);
+      continue;
+    }
+    if (name == "host_error_answer" && has_columns(table, std::array<std::string_view, 1>{"answer"})) {
+      for (std::size_t row = 0; row < table.rows().size(); ++row) {
+        if (const auto* answer = std::get_if<std::string>(&table.at(row, "answer"))) {
+          report.answer.push_back(*answer);
+        }
+      }
       continue;
     }
     constexpr std::array<std::string_view, 3> of_claims = {"subject", "here", "verdict"};

@@ -1,184 +1,200 @@
-// The rendering family of `marti study error`: settings that must be exact are, errors behave as in theory,
-// and the tables are the same at every run.
+// `marti study error`: errors against plain sums and theory, exponents against known ones, and choices
+// against all others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "accel/structure.h"
-#include "scenes/procedural.h"
+#include "processors/program/render.h"
+#include "processors/replay/replay.h"
+#include "scenes/scene.h"
 #include "studies/error/error_keys.h"
-#include "studies/error/median_interval.h"
-#include "studies/error/rendering.h"
-#include "studies/error/rendering_tables.h"
-#include "studies/keys/machine_keys.h"
-#include "studies/tables/csv.h"
-#include "studies/tables/text_table.h"
+#include "studies/error/error_tables.h"
+#include "studies/error/setting.h"
 #include "tests/support/user_error.h"
 
 namespace marti::studies {
 
 using namespace error;
-using namespace keys;
-using namespace tables;
 
 namespace {
 
-FrameConfig small_frame(const std::string& scene) {
-  FrameConfig frame;
-  frame.scene = scene;
-  frame.structure = "octree";
-  frame.render.width = 20;
-  frame.render.height = 16;
-  frame.render.max_depth = 4;
-  frame.memory = sim::MemoryBudget(std::uint64_t{1} << 32U);
-  return frame;
+sim::Config config_of(const std::string& text) {
+  return sim::Config::from_text(error_schema(), text, "error.toml");
 }
 
-RenderingErrorOptions small_options() {
-  RenderingErrorOptions options;
-  options.samples = {1, 4, 16};
-  options.reference_samples = 256;
-  options.depths = {1, 2, 3};
-  options.reference_depth = 8;
-  options.weights = {0.1, 0.5};
-  options.voxel_cuts = {1.0, 16.0};
-  options.repeats = 2;
-  return options;
+const std::string small =
+    "scene.source = \"gears:1\"\nimage = { width = 40, height = 32, max_depth = 4, samples = 4 }\n"
+    "machine.nodes = 4\nerror = { within = [0.2, 1.0], divisors = [2], side = 20, samples = [1, 4, 16], "
+    "depths = [1, 2, 3], weights = [0.1, 0.5], voxel_cuts = [16.0], repeats = 2 }\n";
+
+ErrorConfig read(const std::string& text) {
+  sim::Config config = config_of(text);
+  return read_error(config);
 }
 
-std::vector<const RenderingPoint*> points_of(const RenderingStudy& study, Knob knob) {
-  std::vector<const RenderingPoint*> points;
-  for (const RenderingPoint& point : study.points) {
-    if (point.setting.knob == knob) {
-      points.push_back(&point);
-    }
+std::vector<Setting> measured(const ErrorConfig& config) {
+  std::vector<Setting> settings;
+  add_frame_ways(config, settings);
+  add_image_knobs(config, settings);
+  measure(settings, config.repeats, nullptr);
+  return settings;
+}
+
+const std::vector<Setting>& gears() {
+  static const ErrorConfig config = read(small);
+  static const std::vector<Setting> settings = measured(config);
+  return settings;
+}
+
+const Setting& named(const std::string& way, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      gears(), [&](const Setting& setting) { return setting.way == way && setting.name == name; });
+  EXPECT_NE(found, gears().end()) << way << name;
+  return *found;
+}
+
+Answer grey(float value) { return {0.0, {2, 2, sim::LargeVector<glm::vec3>(4, glm::vec3(value))}, ""}; }
+
+TEST(ErrorStudy, ErrorsAreRelative) {
+  EXPECT_DOUBLE_EQ(error_of({3.0, {}, ""}, {4.0, {}, ""}), 0.25);
+  EXPECT_DOUBLE_EQ(error_of({5.0, {}, ""}, {4.0, {}, ""}), 0.25);
+  EXPECT_EQ(error_of(grey(0.5F), grey(0.5F)), 0.0);
+  Answer other = grey(0.5F);
+  other.image.pixels[2] = {0.5F, 0.75F, 0.5F};
+  EXPECT_DOUBLE_EQ(error_of(other, grey(0.5F)), 0.25 / std::sqrt(12.0) / 0.5);
+  EXPECT_EQ(error_of(grey(0.0F), grey(0.0F)), 0.0);
+  EXPECT_TRUE(std::isinf(error_of(grey(0.1F), grey(0.0F))));
+}
+
+TEST(ErrorStudy, ExactSettingsHaveNoErrorAndAllAreTimed) {
+  for (const Setting& setting : gears()) {
+    const bool exact = &setting == &gears()[setting.exact];
+    EXPECT_TRUE(setting.error() == 0.0 || !(exact || setting.first.note.starts_with("exact")))
+        << setting.name;
+    EXPECT_EQ(setting.seconds.size(), exact && setting.drawn ? 1U : 2U) << setting.name;
   }
-  return points;
 }
 
-const RenderingStudy& jacks() {
-  static const RenderingStudy study = measure_rendering(small_frame("gears:1"), small_options());
-  return study;
+// A frame as small as this is not sampled; a bound is never above what it bounds.
+TEST(ErrorStudy, WaysToTheFrameTimeAreThoseOfAUser) {
+  const double exact = named("exact run", "-").first.ps;
+  EXPECT_EQ(named("--within", "20 %").first.ps, exact);
+  EXPECT_NE(named("--within", "20 %").first.note.find("exact: "), std::string::npos);
+  EXPECT_LE(named("bound", "of one node").first.ps, exact);
+  EXPECT_LT(named("smaller image", "20 x 16").error(), 0.5);
+  EXPECT_LT(named("fewer samples", "1 sample").error(), 0.5);
 }
 
-TEST(RenderingError, WhatMustNotChangeTheImageDoesNot) {
-  const auto exact = points_of(jacks(), Knob::exact);
-  EXPECT_EQ(exact.size(), 22U);
-  for (const RenderingPoint* point : exact) {
-    EXPECT_EQ(point->errors.plain.rmse, 0.0) << point->setting.name;
-    EXPECT_EQ(point->errors.plain.changed, 0U) << point->setting.name;
-    EXPECT_FALSE(point->errors.first) << point->setting.name;
-  }
-  for (const RenderingPoint& point : jacks().points) {
-    EXPECT_EQ(point.cpu_ms.size(), 2U);
-    if (point.setting.reference) {
-      EXPECT_EQ(point.errors.plain.changed, 0U) << point.setting.name;
-    }
-  }
-}
-
-TEST(RenderingError, MoreSamplesAndDeeperRaysAreNearer) {
-  const auto samples = points_of(jacks(), Knob::samples);
-  ASSERT_EQ(samples.size(), 3U);
-  EXPECT_GT(samples[0]->errors.plain.rmse, samples[1]->errors.plain.rmse);
-  EXPECT_GT(samples[1]->errors.plain.rmse, samples[2]->errors.plain.rmse);
-  EXPECT_GT(samples[2]->errors.plain.rmse, jacks().noise_floor);
-  EXPECT_EQ(samples[2]->work.rays[0], 20U * 16U * 16U);
+TEST(ErrorStudy, MoreSamplesAndDeeperRaysAreNearer) {
+  EXPECT_GT(named("samples", "1 a pixel").error(), named("samples", "4 a pixel").error());
+  EXPECT_GT(named("samples", "4 a pixel").error(), named("samples", "16 a pixel").error());
+  EXPECT_GT(named("samples", "16 a pixel").error(), named("samples", "256 a pixel").noise);
+  EXPECT_GT(named("depth", "1 ray").error(), named("depth", "3 rays").error());
+  EXPECT_LT(named("precision", "float").error(), 1e-2);
   // Independent samples would give -1/2, cells of a grid over straight edges -3/4, over smooth parts -1.
-  const std::optional<double> exponent = sample_exponent(jacks());
+  const std::optional<Exponent> exponent = exponent_of(gears(), "samples");
   ASSERT_TRUE(exponent);
-  EXPECT_LT(*exponent, -0.45);
-  EXPECT_GT(*exponent, -1.1);
-
-  const auto depths = points_of(jacks(), Knob::depth);
-  ASSERT_EQ(depths.size(), 4U);
-  EXPECT_GT(depths[0]->errors.plain.rmse, 0.0);
-  EXPECT_LE(depths[2]->errors.plain.rmse, depths[0]->errors.plain.rmse);
-  EXPECT_LT(depths[0]->work.all_rays(), depths[3]->work.all_rays());
+  EXPECT_LT(exponent->value, -0.45);
+  EXPECT_GT(exponent->value, -1.1);
 }
 
-TEST(RenderingError, TablesDoNotDependOnTheRun) {
-  const StudyOutput first = output_of(jacks());
-  const StudyOutput second = rendering_error(small_frame("gears:1"), small_options());
-  ASSERT_EQ(first.tables.size(), second.tables.size());
-  for (std::size_t i = 0; i < first.tables.size(); ++i) {
-    EXPECT_EQ(text_of(first.tables[i]), text_of(second.tables[i]));
+TEST(ErrorStudy, TheSameAgainButForRunTimes) {
+  const std::vector<Setting> again = measured(read(small));
+  ASSERT_EQ(again.size(), gears().size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_EQ(again[i].error(), gears()[i].error()) << again[i].name;
+    EXPECT_EQ(again[i].noise, gears()[i].noise);
   }
-  EXPECT_EQ(first.report, second.report);
-  EXPECT_EQ(first.tables[0].rows().size(), jacks().points.size());
-  EXPECT_EQ(first.host_tables[0].rows().size(), jacks().points.size());
-  EXPECT_NE(first.report.find("give every bit of the image"), std::string::npos);
 }
 
-TEST(RenderingError, TheCheapestMeetsTheTargetAndNothingCheaperDoes) {
-  const std::vector<double> costs = counted_costs(jacks());
-  for (const double target : rendering_targets) {
-    for (std::size_t k = 0; k < knobs; ++k) {
-      const auto knob = static_cast<Knob>(k);
-      const std::optional<std::size_t> best = cheapest(jacks(), knob, target, costs);
-      for (std::size_t i = 0; i < jacks().points.size(); ++i) {
-        const RenderingPoint& point = jacks().points[i];
-        if (point.setting.knob != knob || known_error(jacks(), point) > target) {
-          continue;
-        }
-        ASSERT_TRUE(best);
-        EXPECT_GE(costs[i], costs[*best]);
-      }
-      if (best) {
-        EXPECT_LE(jacks().points[*best].errors.relative, target);
+// Path tracing takes neither weights nor voxel cuts, curved primitives no voxel cut.
+TEST(ErrorStudy, KnobsThatTheFrameHasNotAreLeftOut) {
+  const auto has = [](const std::string& text, std::string_view way) {
+    const ErrorConfig config = read(text);
+    std::vector<Setting> settings;
+    add_image_knobs(config, settings);
+    return std::ranges::any_of(settings, [&](const Setting& setting) { return setting.way == way; });
+  };
+  EXPECT_TRUE(has("scene.source = \"gears:1\"\n", "voxel cut"));
+  EXPECT_FALSE(has("scene.source = \"balls:1\"\n", "voxel cut"));
+  EXPECT_FALSE(has("scene.source = \"gears:1\"\nstructure.kind = \"bvh\"\n", "voxel cut"));
+  const std::string path = "scene.source = \"gears:1\"\nimage.integrator = \"path\"\n";
+  EXPECT_FALSE(has(path, "voxel cut"));
+  EXPECT_FALSE(has(path, "weight"));
+  EXPECT_TRUE(has(path, "samples"));
+}
+
+std::vector<Setting> with_errors(const std::vector<std::pair<double, double>>& values_and_errors,
+                                 double noise) {
+  std::vector<Setting> settings(1);
+  settings[0].noise = noise;
+  settings[0].seconds = {8.0};
+  for (const auto& [value, error] : values_and_errors) {
+    Setting& setting = settings.emplace_back();
+    setting.way = "samples";
+    setting.value = value;
+    setting.drawn = true;
+    setting.squares = 2.0 * error * error;
+    setting.seconds = {1.0, 1.0};
+  }
+  return settings;
+}
+
+TEST(Exponent, OfAPowerLawIsItsOwnAndItsIntervalHolds) {
+  const std::optional<Exponent> exact =
+      exponent_of(with_errors({{1, 0.3}, {4, 0.15}, {16, 0.075}, {64, 0.001}}, 0.01), "samples");
+  ASSERT_TRUE(exact);
+  EXPECT_NEAR(exact->value, -0.5, 1e-12);
+  EXPECT_NEAR(exact->half_width, 0.0, 1e-6);
+  EXPECT_DOUBLE_EQ(exact->to, 16.0) << "64 samples are below the noise";
+  EXPECT_FALSE(exponent_of(with_errors({{1, 0.3}}, 0.0), "samples"));
+  EXPECT_TRUE(std::isinf(exponent_of(with_errors({{1, 0.3}, {2, 0.2}}, 0.0), "samples")->half_width));
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 0.1);
+  int covered = 0;
+  constexpr int trials = 500;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<std::pair<double, double>> noisy;
+    for (const double n : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
+      noisy.emplace_back(n, 0.3 * std::pow(n, -0.4) * std::exp(normal(random)));
+    }
+    const Exponent found = *exponent_of(with_errors(noisy, 0.0), "samples");
+    covered += std::abs(found.value + 0.4) <= found.half_width ? 1 : 0;
+  }
+  EXPECT_NEAR(covered, 0.95 * trials, 25.0);
+}
+
+TEST(ErrorStudy, TheCheapestMeetsTheTargetAndNothingCheaperDoes) {
+  std::size_t answers = 1;  // that of the exponent
+  for (std::size_t exact = 0; exact < gears().size(); ++exact) {
+    if (gears()[exact].exact != exact) {
+      continue;
+    }
+    ++answers;
+    for (const double target : targets) {
+      const Setting& best = gears()[cheapest(gears(), exact, target)];
+      EXPECT_EQ(best.exact, exact);
+      EXPECT_LE(best.error(), target);
+      for (const Setting& other : gears()) {
+        EXPECT_FALSE(other.exact == exact && std::max(other.error(), gears()[exact].noise) <= target &&
+                     median(other.seconds) < median(best.seconds));
       }
     }
   }
+  EXPECT_EQ(answers_of(gears()).size(), answers);
+  EXPECT_EQ(error_table(gears()).rows().size(), gears().size());
 }
 
-TEST(RenderingError, TheFrontIsWhatNoOtherBeats) {
-  const std::vector<double> costs = counted_costs(jacks());
-  for (std::size_t k = 0; k < knobs; ++k) {
-    const auto knob = static_cast<Knob>(k);
-    const std::vector<std::size_t> front = front_of(jacks(), knob, costs);
-    EXPECT_FALSE(front.empty());
-    for (const std::size_t at : front) {
-      for (std::size_t other = 0; other < costs.size(); ++other) {
-        if (jacks().points[other].setting.knob == knob) {
-          const double error = known_error(jacks(), jacks().points[at]);
-          const double other_error = known_error(jacks(), jacks().points[other]);
-          EXPECT_FALSE(costs[other] <= costs[at] && other_error < error);
-          EXPECT_FALSE(costs[other] < costs[at] && other_error <= error);
-        }
-      }
-    }
-  }
-}
-
-TEST(RenderingError, CurvedPrimitivesHaveNoVoxelCutAndSaySo) {
-  RenderingErrorOptions options = small_options();
-  options.samples = {1};
-  options.reference_samples = 16;
-  options.repeats = 1;
-  const RenderingStudy study = measure_rendering(small_frame("balls:1"), options);
-  EXPECT_TRUE(points_of(study, Knob::voxel_cut).empty());
-  ASSERT_EQ(study.plan.notes.size(), 1U);
-  EXPECT_NE(study.plan.notes[0].find("curved primitives"), std::string::npos);
-  EXPECT_EQ(points_of(study, Knob::exact).size(), 22U);
-}
-
-TEST(RenderingError, ReferencesOfMoreSamplesThanOneRenderingHasAreMeans) {
-  FrameConfig frame = small_frame("gears:1");
-  frame.render.width = 5;
-  frame.render.height = 4;
-  RenderingErrorOptions options = small_options();
-  options.samples = {64};
-  options.repeats = 1;
-  options.reference_samples = 1024;
-  const double one = measure_rendering(frame, options).noise_floor;
-  options.reference_samples = 4096;
-  const RenderingStudy study = measure_rendering(frame, options);
-  EXPECT_EQ(study.reference_samples, 4096U);
-  EXPECT_LT(study.noise_floor, one);
-  EXPECT_GT(study.noise_floor, 0.0);
+TEST(ErrorStudy, MedianOfOddAndEven) {
+  EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);
+  EXPECT_EQ(median({1.0, 2.0}), 1.5);
 }
 
 /// A closed room all of whose walls reflect a share and emit: every ray chain goes on for ever, and the light
@@ -208,7 +224,7 @@ scenes::Scene mirror_room(double reflection) {
   return scene;
 }
 
-TEST(RenderingError, ADepthCutLosesTheRestOfAGeometricSeries) {
+TEST(ErrorStudy, ADepthCutLosesTheRestOfAGeometricSeries) {
   for (const double r : {0.3, 0.8}) {
     const scenes::Scene scene = mirror_room(r);
     const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
@@ -218,70 +234,28 @@ TEST(RenderingError, ADepthCutLosesTheRestOfAGeometricSeries) {
         processors::program::render(scene, *triangles, *structure, options).image;
     for (const std::uint32_t depth : {1U, 2U, 5U, 12U}) {
       options.max_depth = depth;
-      const RenderingErrors errors =
-          rendering_errors(processors::program::render(scene, *triangles, *structure, options).image, deep);
-      // Light of emission 1 after d, d + 1, ... reflections: r^d / (1 - r) with r <= 1.
-      const double bound = std::pow(r, depth) / (1.0 - r);
-      EXPECT_LE(errors.plain.largest, bound * (1.0 + 1e-5) + 1e-6) << r << " " << depth;
-      EXPECT_NEAR(errors.plain.rmse, bound - std::pow(r, 60) / (1.0 - r), 1e-5 * bound + 1e-6);
+      const Answer answer{0.0, processors::program::render(scene, *triangles, *structure, options).image, ""};
+      // Light of emission 1 after d, d + 1, ... reflections: r^d / (1 - r), of 1 / (1 - r) in all.
+      EXPECT_NEAR(error_of(answer, {0.0, deep, ""}), std::pow(r, depth) - std::pow(r, 60), 2e-5)
+          << r << depth;
     }
   }
 }
 
-TEST(RenderingError, FloatsChangeLittleInMostPixels) {
-  const auto precision = points_of(jacks(), Knob::precision);
-  ASSERT_EQ(precision.size(), 2U);
-  const RenderingErrors& errors = precision[0]->errors;
-  EXPECT_TRUE(precision[0]->setting.render.floats);
-  EXPECT_GT(errors.plain.changed, 0U);
-  EXPECT_LT(errors.median_change, 1e-5);
-  EXPECT_LT(errors.plain.visible, 20U * 16U / 20U) << "but for a few at edges";
-}
-
-TEST(Median, OfOddAndEven) {
-  const MedianInterval odd = median_interval({5.0, 1.0, 3.0});
-  EXPECT_EQ(odd.median, 3.0);
-  EXPECT_EQ(odd.low, 1.0);
-  EXPECT_EQ(odd.high, 5.0);
-  EXPECT_DOUBLE_EQ(odd.confidence, 0.75);
-  EXPECT_EQ(median_interval({1.0, 2.0}).median, 1.5);
-  EXPECT_EQ(median_interval({4.0}).confidence, 0.0);
-}
-
-sim::Config config_of(const std::string& text) {
-  return sim::Config::from_text(error_schema(), text, "error.toml");
-}
-
-std::string refusal(const std::string& text) {
-  return test::user_error_of([&] {
-    sim::Config config = config_of(text);
-    const FrameConfig frame = read_frame(config);
-    (void)read_rendering_error(config, frame);
-    (void)read_machine(config);
-    config.refuse_unused();
-  });
-}
-
-TEST(RenderingErrorKeys, AreReadSortedAndRefusedWithFileLineAndKey) {
-  sim::Config config = config_of("[error.rendering]\nsamples = [8, 2, 8]\nweights = [0.5, 0.1]\n");
-  const FrameConfig frame = read_frame(config);
-  const RenderingErrorOptions options = read_rendering_error(config, frame);
-  EXPECT_EQ(options.samples, (std::vector<std::uint32_t>{2, 8}));
-  EXPECT_EQ(options.weights, (std::vector<double>{0.1, 0.5}));
-  EXPECT_EQ(options.reference_samples, 1024U);
-  EXPECT_EQ(refusal(""), "no UserError");
+TEST(ErrorKeys, AreReadSortedAndRefusedWithFileLineAndKey) {
+  EXPECT_EQ(read("error.samples = [8, 2, 8]\n").samples, (std::vector<std::uint32_t>{2, 8}));
   const auto expect = [](const std::string& text, const std::string& key, const std::string& reason) {
-    const std::string message = refusal(text);
+    const std::string message = test::user_error_of([&] { (void)read(text); });
     EXPECT_NE(message.find("error.toml:2"), std::string::npos) << message;
     EXPECT_NE(message.find(key), std::string::npos) << message;
     EXPECT_NE(message.find(reason), std::string::npos) << message;
   };
-  expect("[error.rendering]\nsamples = []\n", "error.rendering.samples", "empty");
-  expect("[error.rendering]\nreference_samples = 1000\n", "error.rendering.reference_samples", "1024");
-  expect("[error.rendering]\ndepths = [1, 16]\n", "error.rendering.depths", "16 is not below");
-  expect("[error.rendering]\nweights = [0.0]\n", "error.rendering.weights", "");
+  expect("[error]\nsamples = [65]\n", "error.samples", "64");
+  expect("[error]\ndepths = [1, 33]\n", "error.depths", "32");
+  expect("[error]\nweights = [0.0]\n", "error.weights", "");
+  expect("[error]\nwithin = [1.5]\n", "error.within", "");
   expect("[image]\nvoxel_cut = 1.0\n", "image.voxel_cut", "the study sets it itself");
-  expect("[error.rendering]\nsample = [1]\n", "error.rendering.sample", "samples");
+  expect("[error]\nsample = [1]\n", "error.sample", "samples");
 }
 
 }  // namespace
