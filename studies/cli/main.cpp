@@ -60,7 +60,6 @@
 #include "studies/show/summary.h"
 #include "studies/show/verify_plan.h"
 #include "studies/stability/stability.h"
-#include "studies/stability/stability_keys.h"
 #include "studies/tables/page_file.h"
 #include "studies/tables/result_directory.h"
 #include "studies/version.h"
@@ -261,7 +260,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
       schemes::schemes_schema, schemes::run_schemes);
   add("error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper", true,
       error::error_schema, error::run_error);
-  add("stability", "Stiff and extreme cases, each against an oracle; exit 1 if one fails", false,
+  add("stability", "Extremes of a scene and a machine, each against an oracle; exit 1 if one fails", false,
       stability::stability_schema, stability::run_stability);
 }
 

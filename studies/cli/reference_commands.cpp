@@ -19,7 +19,7 @@
 #include "studies/run/run_result.h"
 #include "studies/schemes/schemes_keys.h"
 #include "studies/show/lists.h"
-#include "studies/stability/stability_keys.h"
+#include "studies/stability/stability.h"
 #include "studies/sweep/plan/sweep_keys.h"
 
 namespace marti::studies::cli {

@@ -27,6 +27,8 @@ class PreparedFrame {
   PreparedFrame(const keys::FrameConfig& config, const scenes::Scene& scene);
 
   [[nodiscard]] const keys::FrameConfig& config() const { return config_; }
+  [[nodiscard]] const std::shared_ptr<const accel::TriangleSet>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::shared_ptr<const accel::Structure>& structure() const { return structure_; }
   /// Traces and records the pixels of `only`, all if it is null, and adds them to `before`, if that is not
   /// null (processors::RenderOptions).
   [[nodiscard]] processors::program::Frame trace(const processors::program::PixelSet* only = nullptr,
@@ -46,7 +48,7 @@ class PreparedFrame {
   const scenes::Scene* scene_ = nullptr;
   std::optional<PlanFacts> facts_;  // empty: nothing is left out
   std::shared_ptr<const accel::TriangleSet> triangles_;
-  std::unique_ptr<accel::Structure> structure_;
+  std::shared_ptr<const accel::Structure> structure_;
   FunctionalRun run_;  // all but the frame
 };
 

@@ -59,7 +59,7 @@ room(studies/frames host keys run tables)
 room(studies/operations host keys run tables)
 room(studies/paper host keys run tables)
 room(studies/schemes figures keys paper run tables)
-room(studies/stability host keys run show tables)
+room(studies/stability keys run tables)
 room(studies/error estimate figures host keys run tables)
 room(studies/explore estimate figures host keys progress report/model report/page report/plots report/read run show tables)
 room(studies/cli compare error estimate explore figures frames host keys operations paper progress report run run/plan run/trace schemes show

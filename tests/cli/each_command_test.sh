@@ -44,8 +44,7 @@ marti study schemes -- "$source/configs/schemes.toml" "${small[@]}" --set 'schem
   --set 'schemes.cell_levels=[2,4]' --set schemes.stage_nodes=6 -o schemes
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set scene.source=gears:1 \
   --set error.repeats=1 --set error.side=12 --set 'error.samples=[1,2]' --set 'error.depths=[1]' -o error
-marti study stability -- --set stability.rays=100 --set stability.nodes=64 \
-  --set 'stability.only=["leaks-at-1e6","zero-latencies"]' -o stability
+marti study stability -- "$source/configs/marti.toml" "${small[@]}" --set stability.rays=100 --set stability.nodes=64 -o stability
 marti scene list --
 marti scene info -- tetra:3
 marti scene export -- tetra:3 tetra.glb

@@ -76,7 +76,7 @@ TEST(Study, WhatIsRefusedLeavesNoDirectory) {
   for (const std::string& study :
        {"operations " + quoted(configs / "marti.toml"), "paper " + quoted(configs / "paper.toml"),
         "frames " + quoted(configs / "marti.toml"), "schemes " + quoted(configs / "schemes.toml"),
-        "error " + quoted(configs / "error.toml"), std::string("stability")}) {
+        "error " + quoted(configs / "error.toml"), "stability " + quoted(configs / "marti.toml")}) {
     expect_refused("study " + study + out, "scene.source");
     EXPECT_FALSE(fs::exists(directory.path() / "new")) << study;
   }

@@ -53,7 +53,7 @@ void compare(std::vector<accel::TriangleCorners> corners, std::uint64_t seed,
   RayMaker maker(*triangles, all[0]->bounds(), seed);
   accel::NullVisitor visitor;
   std::uint64_t hits = 0;
-  for (const Aim aim : studies::stability::all_aims) {
+  for (const Aim aim : tests::all_aims) {
     for (int k = 0; k < 30; ++k) {
       const Ray ray = maker.make(aim);
       if (!fits(ray)) {
@@ -75,9 +75,9 @@ void compare(std::vector<accel::TriangleCorners> corners, std::uint64_t seed,
 
 TEST(FloatKernel, EveryStructureGivesBruteForcesHits) {
   for (const double offset : {0.0, 1e4}) {
-    compare(studies::stability::hostile_soup(offset, 11), 12);
+    compare(tests::hostile_soup(offset, 11), 12);
   }
-  compare(studies::stability::hostile_soup(0.0, 13, true), 14);
+  compare(tests::hostile_soup(0.0, 13, true), 14);
 }
 
 TEST(FloatKernel, CurvedPrimitivesToo) {
@@ -90,11 +90,11 @@ TEST(FloatKernel, CurvedPrimitivesToo) {
   cone.tip = {0.7, 0.6, 0.5};
   cone.radius = 0.3;
   cone.tip_radius = 0.1;
-  compare(studies::stability::hostile_soup(0.0, 15), 16, {ball, cone});
+  compare(tests::hostile_soup(0.0, 15), 16, {ball, cone});
 }
 
 TEST(FloatKernel, RefusesDirectionsThatAreNoFloats) {
-  const auto triangles = std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 1));
+  const auto triangles = std::make_shared<const TriangleSet>(tests::hostile_soup(0.0, 1));
   const accel::BruteForce brute(triangles);
   accel::NullVisitor visitor;
   Ray ray;

@@ -107,10 +107,9 @@ class MixedSoup : public ::testing::TestWithParam<Soup> {};
 
 TEST_P(MixedSoup, SameHitsAsBruteForce) {
   const Soup& soup = GetParam();
-  MixedContract contract(
-      std::make_shared<const TriangleSet>(soup.triangles ? studies::stability::hostile_soup(soup.offset, 31)
-                                                         : std::vector<accel::TriangleCorners>{},
-                                          hostile_quadrics(soup.offset, 37, soup.huge)));
+  MixedContract contract(std::make_shared<const TriangleSet>(
+      soup.triangles ? tests::hostile_soup(soup.offset, 31) : std::vector<accel::TriangleCorners>{},
+      hostile_quadrics(soup.offset, 37, soup.huge)));
   QuadricRayMaker at_quadrics(contract.set(), 41);
   for (const QuadricAim aim : all_quadric_aims) {
     for (int k = 0; k < test::cases(2500); ++k) {
@@ -122,7 +121,7 @@ TEST_P(MixedSoup, SameHitsAsBruteForce) {
   }
   if (soup.triangles) {
     RayMaker at_triangles(contract.set(), contract.root(), 43);
-    for (const Aim aim : studies::stability::all_aims) {
+    for (const Aim aim : tests::all_aims) {
       for (int k = 0; k < test::cases(1500); ++k) {
         contract.compare(at_triangles.make(aim));
         if (HasFatalFailure()) {
@@ -179,8 +178,7 @@ TEST(MixedContract, ScaleByPowersOfTwoIsExact) {
 
 // A counting scalar takes the same steps and finds the same hits.
 TEST(MixedContract, CountingChangesNothing) {
-  const auto set =
-      std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 3), hostile_quadrics(0.0, 3));
+  const auto set = std::make_shared<const TriangleSet>(tests::hostile_soup(0.0, 3), hostile_quadrics(0.0, 3));
   for (const std::string_view kind : accel::structure_kinds()) {
     accel::StructureOptions options;
     options.octree.max_level = options.bsp.max_level = 7;

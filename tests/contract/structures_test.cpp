@@ -17,8 +17,8 @@
 #include "accel/mailbox.h"
 #include "accel/structure.h"
 #include "scenes/procedural.h"
-#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/kernel_check.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/same_bits.h"
 
@@ -29,7 +29,7 @@ using accel::Hit;
 using accel::Ray;
 using accel::Structure;
 using accel::TriangleSet;
-using studies::stability::TestCounter;
+using tests::TestCounter;
 
 /// A structure and how it was made.
 struct Built {
@@ -122,7 +122,7 @@ std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corne
   RayMaker maker(*triangles, all[0].structure->bounds(), seed);
   accel::NullVisitor visitor;
   std::uint64_t hits = 0;
-  for (const Aim aim : studies::stability::all_aims) {
+  for (const Aim aim : tests::all_aims) {
     for (std::uint32_t k = 0; k < rays; ++k) {
       const Ray ray = maker.make(aim);
       const Hit expected = oracle.closest(ray, visitor);
@@ -196,21 +196,20 @@ void PrintTo(const Soup& soup, std::ostream* out) {
 class SoupContract : public ::testing::TestWithParam<Soup> {};
 
 TEST_P(SoupContract, SameHitsAsBruteForce) {
-  EXPECT_GT(compare_with_brute_force(studies::stability::hostile_soup(GetParam().offset, 11, GetParam().huge),
+  EXPECT_GT(compare_with_brute_force(tests::hostile_soup(GetParam().offset, 11, GetParam().huge),
                                      rays_of_class, 13),
             2 * rays_of_class);
 }
 
 TEST_P(SoupContract, SameHitsAsBruteForceWithOtherRays) {
-  EXPECT_GT(compare_with_brute_force(studies::stability::hostile_soup(GetParam().offset, 11, GetParam().huge),
+  EXPECT_GT(compare_with_brute_force(tests::hostile_soup(GetParam().offset, 11, GetParam().huge),
                                      rays_of_class, 14),
             2 * rays_of_class);
 }
 
 // All corners exactly in planes of the tree, down to level 6.
 TEST_P(SoupContract, SameHitsWithTrianglesInCellPlanes) {
-  std::vector<accel::TriangleCorners> soup =
-      studies::stability::hostile_soup(GetParam().offset, 19, GetParam().huge);
+  std::vector<accel::TriangleCorners> soup = tests::hostile_soup(GetParam().offset, 19, GetParam().huge);
   const auto bounds = accel::make_structure("octree", std::make_shared<const TriangleSet>(soup))->bounds();
   const TriangleSet tight(soup);
   for (auto& triangle : soup) {
@@ -235,13 +234,13 @@ INSTANTIATE_TEST_SUITE_P(Structures, SoupContract,
 
 // Scaling a scene by 2^-60 to 2^60 scales the hits, bit for bit.
 TEST(StructureContract, ScaleByPowersOfTwoIsExact) {
-  const std::vector<accel::TriangleCorners> unit = studies::stability::hostile_soup(0.0, 3);
+  const std::vector<accel::TriangleCorners> unit = tests::hostile_soup(0.0, 3);
   const auto unit_set = std::make_shared<const TriangleSet>(unit);
   const auto reference = accel::make_structure("octree", unit_set);
   RayMaker maker(*unit_set, reference->bounds(), 5);
   std::vector<std::pair<Ray, Hit>> expected;
   for (int k = 0; k < test::cases(20000); ++k) {
-    const Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
+    const Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % 6]);
     expected.emplace_back(ray, reference->closest(ray));
   }
   for (const int power : {-60, -30, -1, 1, 30, 60}) {
@@ -276,13 +275,13 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
   Random random(23);
   switch (which) {
     case 0:
-      all.push_back(studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+      all.push_back(tests::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
       break;
     case 1:
-      all.push_back(studies::stability::corners({1, 2, 3}, {1, 2, 3}, {1, 2, 3}));
+      all.push_back(tests::corners({1, 2, 3}, {1, 2, 3}, {1, 2, 3}));
       break;
     case 2:
-      all.push_back(studies::stability::corners({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
+      all.push_back(tests::corners({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
       break;
     case 3:
     case 4:
@@ -290,29 +289,28 @@ std::vector<accel::TriangleCorners> degenerate_scene(int which) {
       for (int i = 0; i < 200; ++i) {  // flat, in each axis plane
         const glm::dvec3 flatten = glm::dvec3(which != 3, which != 4, which != 5);
         const glm::dvec3 a = random.in_box(glm::dvec3(-1.0), glm::dvec3(1.0));
-        all.push_back(studies::stability::corners(a * flatten, (a + 0.3 * random.direction()) * flatten,
-                                                  (a + 0.3 * random.direction()) * flatten));
+        all.push_back(tests::corners(a * flatten, (a + 0.3 * random.direction()) * flatten,
+                                     (a + 0.3 * random.direction()) * flatten));
       }
       break;
     case 6:
       for (int i = 0; i < 200; ++i) {  // near the smallest and largest sizes at once
         const double size = std::pow(10.0, random.between(-18.0, 18.0));
         const glm::dvec3 a = size * random.direction();
-        all.push_back(
-            studies::stability::corners(a, a + size * random.direction(), a + size * random.direction()));
+        all.push_back(tests::corners(a, a + size * random.direction(), a + size * random.direction()));
       }
       break;
     case 9:
-      all.push_back(studies::stability::corners({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
+      all.push_back(tests::corners({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
       break;
     case 8:
-      all.assign(2000, studies::stability::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+      all.assign(2000, tests::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
       break;
     default:
       for (int i = 0; i < 500; ++i) {  // coincident, in three orders
-        all.push_back(studies::stability::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
+        all.push_back(tests::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0.1, 1, 1}));
         if (i % 3 == 0) {
-          all.push_back(studies::stability::corners({1, 0.3, 0.2}, {0.1, 1, 1}, {-1, -1, -1}));
+          all.push_back(tests::corners({1, 0.3, 0.2}, {0.1, 1, 1}, {-1, -1, -1}));
         }
       }
       break;
@@ -350,7 +348,7 @@ TEST(StructureContract, NothingToHit) {
 }
 
 TEST(StructureContract, RefusesRaysThatAreNone) {
-  const auto set = std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 1));
+  const auto set = std::make_shared<const TriangleSet>(tests::hostile_soup(0.0, 1));
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Built& built : build_all(set)) {
@@ -365,7 +363,7 @@ TEST(StructureContract, RefusesRaysThatAreNone) {
 }
 
 TEST(StructureContract, KnowsItsKinds) {
-  const auto set = std::make_shared<const TriangleSet>(studies::stability::hostile_soup(0.0, 1));
+  const auto set = std::make_shared<const TriangleSet>(tests::hostile_soup(0.0, 1));
   for (const std::string_view kind : accel::structure_kinds()) {
     const auto structure = accel::make_structure(kind, set);
     EXPECT_EQ(structure->kind(), kind);

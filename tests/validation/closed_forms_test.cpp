@@ -9,7 +9,7 @@
 #include "processors/replay/replay.h"
 #include "processors/theory/closed_network.h"
 #include "sim/engine.h"
-#include "studies/stability/cyclic_machine.h"
+#include "tests/support/cyclic_machine.h"
 
 namespace marti::processors {
 
@@ -19,7 +19,7 @@ using namespace theory;
 
 namespace {
 
-using studies::stability::Cyclic;
+using tests::Cyclic;
 
 TEST(ClosedForms, DeterministicNodesOnOneBusAreExact) {
   constexpr std::int64_t reads = 50;

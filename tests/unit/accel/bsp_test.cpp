@@ -42,20 +42,20 @@ std::vector<scenes::Bounds> boxes_of(const Bsp& bsp) {
 }
 
 TEST(Bsp, NodesAreBreadthFirstAndCounted) {
-  const Bsp bsp = Bsp::build(set_of(studies::stability::hostile_soup(0.0, 1)), {4, 5});
+  const Bsp bsp = Bsp::build(set_of(tests::hostile_soup(0.0, 1)), {4, 5});
   EXPECT_EQ(bsp.levels().size(), 13U) << "five levels of the octree";
   check_numbering(bsp, 2, 4);
 }
 
 TEST(Bsp, LeavesListWhatMeetsThem) {
   for (const double offset : {0.0, 1e6}) {
-    const Bsp bsp = Bsp::build(set_of(studies::stability::hostile_soup(offset, 2)), {6, 5});
+    const Bsp bsp = Bsp::build(set_of(tests::hostile_soup(offset, 2)), {6, 5});
     check_lists(bsp, boxes_of(bsp));
   }
 }
 
 TEST(Bsp, WalksFrontToBackThroughTheLeavesOnTheRay) {
-  const Bsp bsp = Bsp::build(set_of(studies::stability::hostile_soup(0.0, 4)), {3, 5});
+  const Bsp bsp = Bsp::build(set_of(tests::hostile_soup(0.0, 4)), {3, 5});
   EXPECT_GT(check_walks(bsp, boxes_of(bsp), 2), test::cases(20000U));
 }
 
@@ -68,8 +68,8 @@ BspOptions pushing(std::uint32_t max_objects, std::uint32_t max_level) {
 }
 
 TEST(Bsp, CountingChangesNothing) {
-  check_counting(Bsp::build(set_of(studies::stability::hostile_soup(0.0, 8)), {5, 9}));
-  check_counting(Bsp::build(set_of(studies::stability::hostile_soup(0.0, 8)), pushing(5, 9)));
+  check_counting(Bsp::build(set_of(tests::hostile_soup(0.0, 8)), {5, 9}));
+  check_counting(Bsp::build(set_of(tests::hostile_soup(0.0, 8)), pushing(5, 9)));
 }
 
 /// The leaves of a walk in order, after checking that each was found by a path from the root.
@@ -97,13 +97,13 @@ std::vector<std::uint32_t> leaves_of(const Bsp& bsp, const Recorder& recorder) {
 // Every leaf that the ray crosses for longer than rounding can move it, in order, from the root each time,
 // and none twice.
 TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
-  const Bsp bsp = Bsp::build(set_of(studies::stability::hostile_soup(0.0, 4)), pushing(3, 5));
+  const Bsp bsp = Bsp::build(set_of(tests::hostile_soup(0.0, 4)), pushing(3, 5));
   const std::vector<scenes::Bounds> boxes = boxes_of(bsp);
   RayMaker maker(bsp.triangles(), bsp.bounds(), 6);
   const double margin = 8.0 * bsp.delta();
   std::uint64_t visited = 0;
   for (int k = 0; k < test::cases(6000) && !::testing::Test::HasFailure(); ++k) {
-    const accel::Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
+    const accel::Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % 6]);
     Recorder recorder;
     const accel::Hit hit = bsp.closest(ray, recorder);
     const std::vector<std::uint32_t> leaves = leaves_of(bsp, recorder);
@@ -129,7 +129,7 @@ TEST(Bsp, PushedPointsFindTheLeavesOnTheRay) {
 
 // Both walks meet the same leaves, except those that a ray only touches.
 TEST(Bsp, BothWalksVisitTheSameLeaves) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 4));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 4));
   const Bsp recursive = Bsp::build(triangles, {3, 6});
   const Bsp pushed = Bsp::build(triangles, pushing(3, 6));
   RayMaker maker(*triangles, recursive.bounds(), 16);
@@ -179,7 +179,7 @@ TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
   for (const double x : {0.0, 1.0}) {
     for (const double y : {0.0, 1.0}) {
       for (const double z : {0.0, 1.0}) {
-        points.push_back(studies::stability::corners({x, y, z}, {x, y, z}, {x, y, z}));
+        points.push_back(tests::corners({x, y, z}, {x, y, z}, {x, y, z}));
       }
     }
   }
@@ -200,7 +200,7 @@ TEST(Bsp, ALeafIsLeftBySixDivisionsSevenAdditionsAndFiveComparisons) {
 
 // Where both trees split as far as possible, three levels of the BSP tree equal one of the octree.
 TEST(Bsp, ThreeLevelsMakeOneOfTheOctree) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 3));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 3));
   const Bsp bsp = Bsp::build(triangles, {1, 4});
   const Octree octree = Octree::build(triangles, {1, 4});
   const auto sizes = [](const accel::Topology& topology, std::uint8_t level) {
@@ -218,7 +218,7 @@ TEST(Bsp, ThreeLevelsMakeOneOfTheOctree) {
 }
 
 TEST(Bsp, RefusesOptionsOutOfRange) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 5));
   EXPECT_THROW((void)Bsp::build(triangles, {0, 12}), sim::UserError);
   EXPECT_THROW((void)Bsp::build(triangles, {8, 0}), sim::UserError);
   EXPECT_THROW((void)Bsp::build(triangles, {8, 22}), sim::UserError);

@@ -42,8 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Bvh, BvhOfEachNode,
                          name_of);
 
 std::shared_ptr<const accel::TriangleSet> mixed_set() {
-  return std::make_shared<const accel::TriangleSet>(studies::stability::hostile_soup(0.0, 1),
-                                                    hostile_quadrics(0.0, 1));
+  return std::make_shared<const accel::TriangleSet>(tests::hostile_soup(0.0, 1), hostile_quadrics(0.0, 1));
 }
 
 /// Numbering, sizes of nodes and leaves, and each primitive in exactly one leaf.
@@ -83,8 +82,8 @@ void check_tree(const Bvh& bvh) {
 TEST_P(BvhOfEachNode, EachPrimitiveIsInOneLeafAndNodesAreBreadthFirst) {
   check_tree(build(mixed_set()));
   check_tree(build(mixed_set(), 1));
-  check_tree(build(set_of(studies::stability::hostile_soup(1e6, 4, true))));
-  check_tree(build(set_of({studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})));
+  check_tree(build(set_of(tests::hostile_soup(1e6, 4, true))));
+  check_tree(build(set_of({tests::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})));
 }
 
 // Triangles each half as large and half as far as the one before: every split cuts off one of them, unless
@@ -93,10 +92,10 @@ TEST_P(BvhOfEachNode, AHostileSceneIsNoDeeperThanLogsCanSay) {
   std::vector<accel::TriangleCorners> all;
   for (int k = 0; k < 120; ++k) {
     const double s = std::ldexp(1.0, -k);
-    all.push_back(studies::stability::corners({s, 0, 0}, {1.1 * s, 0, 0}, {s, 0.1 * s, 0.1 * s}));
+    all.push_back(tests::corners({s, 0, 0}, {1.1 * s, 0, 0}, {s, 0.1 * s, 0.1 * s}));
   }
   check_tree(build(set_of(all), 1));
-  all.assign(500, studies::stability::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  all.assign(500, tests::corners({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   check_tree(build(set_of(all), 1));
 }
 
@@ -115,7 +114,7 @@ TEST_P(BvhOfEachNode, TheTreeIsTheSameWithAnyNumberOfThreads) {
 // The counting walk is written without vectors, so this compares the two.
 TEST_P(BvhOfEachNode, CountingChangesNothing) {
   check_counting(build(mixed_set()));
-  check_counting(build(set_of(studies::stability::hostile_soup(1e3, 8, true)), 1));
+  check_counting(build(set_of(tests::hostile_soup(1e3, 8, true)), 1));
 }
 
 /// The tight box of what a node lists, from the primitives alone.
@@ -169,7 +168,7 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
   RayMaker maker(bvh.triangles(), bvh.bounds(), 6);
   std::uint64_t leaves = 0;
   for (int k = 0; k < 3000; ++k) {
-    accel::Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]);
+    accel::Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % 6]);
     ray.direction /= glm::length(ray.direction);
     Recorder recorder;
     const accel::Hit hit = bvh.closest(ray, recorder);
@@ -242,7 +241,7 @@ TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
 }
 
 TEST(Bvh, RefusesOptionsOutOfRange) {
-  const auto set = set_of(studies::stability::hostile_soup(0.0, 1));
+  const auto set = set_of(tests::hostile_soup(0.0, 1));
   for (const BvhOptions& options :
        {BvhOptions{.max_objects = 0}, BvhOptions{.max_objects = 65}, BvhOptions{.bins = 1},
         BvhOptions{.bins = 65}, BvhOptions{.node = BvhNodeKind::eight_quantised, .max_objects = 4}}) {

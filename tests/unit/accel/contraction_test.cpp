@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "accel/watertight.h"
-#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/kernel_check.h"
 
 namespace marti::tests {
 namespace {
@@ -21,8 +21,8 @@ bool fused_instructions_run_here() {
 #endif
 }
 
-using studies::stability::exact_sign;
-using studies::stability::sign;
+using tests::exact_sign;
+using tests::sign;
 
 TEST(Contraction, SignsOfEdgeFunctionsAreExact) {
   if (!fused_instructions_run_here()) {
@@ -65,8 +65,8 @@ TEST(Contraction, KernelLeavesNoGapOnASharedEdge) {
     ray.direction = a + random.unit() * (b - a);
     const accel::RaySetup<double> setup(ray);
     accel::Best<double> best(setup);
-    accel::intersect(setup, studies::stability::corners(a, b, 0.5 * (a + b) + side), 0, best);
-    accel::intersect(setup, studies::stability::corners(b, a, 0.5 * (a + b) - side), 1, best);
+    accel::intersect(setup, tests::corners(a, b, 0.5 * (a + b) + side), 0, best);
+    accel::intersect(setup, tests::corners(b, a, 0.5 * (a + b) - side), 1, best);
     leaks += best.found() ? 0 : 1;
   }
   EXPECT_EQ(leaks, 0);

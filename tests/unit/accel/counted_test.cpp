@@ -57,8 +57,7 @@ TEST(CountedScalar, CountsTheKernel) {
   const accel::RaySetup<Counted> setup({{5.0, 5.0, 0.0}, {0.0, 0.0, 1.0}});
   accel::Best<Counted> best(setup);
   const OperationCounts counts = count([&] {
-    EXPECT_FALSE(
-        accel::intersect(setup, studies::stability::corners({0, 0, 2}, {1, 0, 2}, {0, 1, 2}), 0, best));
+    EXPECT_FALSE(accel::intersect(setup, tests::corners({0, 0, 2}, {1, 0, 2}, {0, 1, 2}), 0, best));
   });
   EXPECT_EQ(counts.add, 18U);
   EXPECT_EQ(counts.multiply, 12U);

@@ -43,7 +43,7 @@ std::vector<scenes::Bounds> boxes_of(const Grid& grid) {
 }
 
 TEST(Grid, IsAHeaderAndItsCells) {
-  const Grid grid = Grid::build(set_of(studies::stability::hostile_soup(0.0, 1)), with({3, 5, 7}));
+  const Grid grid = Grid::build(set_of(tests::hostile_soup(0.0, 1)), with({3, 5, 7}));
   const auto& nodes = grid.topology().nodes;
   ASSERT_EQ(nodes.size(), 1U + 3 * 5 * 7);
   EXPECT_FALSE(nodes[0].leaf);
@@ -61,7 +61,7 @@ TEST(Grid, IsAHeaderAndItsCells) {
 
 TEST(Grid, CellsListWhatMeetsThem) {
   for (const double offset : {0.0, 1e6}) {
-    const Grid grid = Grid::build(set_of(studies::stability::hostile_soup(offset, 2)), with({9, 16, 5}));
+    const Grid grid = Grid::build(set_of(tests::hostile_soup(offset, 2)), with({9, 16, 5}));
     check_lists(grid, boxes_of(grid));
   }
 }
@@ -69,22 +69,20 @@ TEST(Grid, CellsListWhatMeetsThem) {
 // The walk against looking at every cell.
 TEST(Grid, WalksFrontToBackThroughTheCellsOnTheRay) {
   for (const auto& resolution : {std::array<std::uint32_t, 3>{16, 16, 16}, {13, 1, 40}}) {
-    const Grid grid = Grid::build(set_of(studies::stability::hostile_soup(0.0, 4)), with(resolution));
+    const Grid grid = Grid::build(set_of(tests::hostile_soup(0.0, 4)), with(resolution));
     const int most = static_cast<int>(resolution[0] + resolution[1] + resolution[2]);
     EXPECT_GT(check_walks(grid, boxes_of(grid), most), test::cases(20000U));
   }
 }
 
-TEST(Grid, CountingChangesNothing) {
-  check_counting(Grid::build(set_of(studies::stability::hostile_soup(0.0, 8))));
-}
+TEST(Grid, CountingChangesNothing) { check_counting(Grid::build(set_of(tests::hostile_soup(0.0, 8)))); }
 
 // Each step goes to a neighbour across one face, also where the ray passes through edges and corners.
 TEST(Grid, StepsAreAlongOneAxis) {
-  const Grid grid = Grid::build(set_of(studies::stability::hostile_soup(0.0, 4)), with({8, 8, 8}));
+  const Grid grid = Grid::build(set_of(tests::hostile_soup(0.0, 4)), with({8, 8, 8}));
   RayMaker maker(grid.triangles(), grid.bounds(), 3);
   for (int k = 0; k < 20000; ++k) {
-    const accel::Ray ray = maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 7]);
+    const accel::Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % 7]);
     Recorder recorder;
     (void)grid.closest(ray, recorder);
     ASSERT_NE(recorder.visits.size(), 1U);
@@ -99,7 +97,7 @@ TEST(Grid, StepsAreAlongOneAxis) {
 }
 
 TEST(Grid, ResolutionFollowsDensity) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 1));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 1));
   for (const double density : {0.1, 1.0, 4.0, 50.0}) {
     GridOptions options;
     options.density = density;
@@ -111,7 +109,7 @@ TEST(Grid, ResolutionFollowsDensity) {
 
 TEST(Grid, FlatScenesHaveOneCellAcross) {
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<TriangleCorners> sheet = studies::stability::hostile_soup(0.0, 1);
+    std::vector<TriangleCorners> sheet = tests::hostile_soup(0.0, 1);
     for (TriangleCorners& triangle : sheet) {
       for (std::size_t k = 0; k < 3; ++k) {
         triangle[3 * k + static_cast<std::size_t>(axis)] = 0.25;
@@ -124,8 +122,8 @@ TEST(Grid, FlatScenesHaveOneCellAcross) {
 }
 
 TEST(Grid, StaysWithinItsLimits) {
-  const auto triangles = set_of(std::vector<TriangleCorners>(
-      1000, studies::stability::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0, 1, 1})));
+  const auto triangles =
+      set_of(std::vector<TriangleCorners>(1000, tests::corners({-1, -1, -1}, {1, 0.3, 0.2}, {0, 1, 1})));
   GridOptions options;
   options.max_entries = 5000;
   const Grid grid = Grid::build(triangles, options);
@@ -138,7 +136,7 @@ TEST(Grid, StaysWithinItsLimits) {
 }
 
 TEST(Grid, RefusesOptionsOutOfRange) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 5));
   const auto refused = [&](auto change) {
     GridOptions options;
     change(options);

@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "studies/stability/kernel_check.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/kernel_check.h"
 #include "tests/support/long_tests.h"
 
 namespace marti::tests {
@@ -18,11 +18,11 @@ using accel::Hit;
 using accel::Ray;
 using accel::RaySetup;
 using accel::TriangleCorners;
-using studies::stability::Aimed;
-using studies::stability::random_aimed;
-using studies::stability::test_one;
+using tests::Aimed;
+using tests::random_aimed;
+using tests::test_one;
 
-const TriangleCorners unit_triangle = studies::stability::corners({0, 0, 2}, {1, 0, 2}, {0, 1, 2});
+const TriangleCorners unit_triangle = tests::corners({0, 0, 2}, {1, 0, 2}, {0, 1, 2});
 
 TEST(Kernel, GivesTheParameterAndTheWeights) {
   for (const double length : {1.0, 0.25, -0.5}) {
@@ -81,7 +81,7 @@ TEST(Kernel, HitsLieOnTheTriangleEvenEdgeOn) {
     ray.origin = p + random.between(1.0, 3.0) * (p - q) +
                  std::ldexp(1.0, -static_cast<int>(random.below(60))) * random.direction();
     ray.direction = q - ray.origin;
-    const Hit hit = test_one(ray, studies::stability::corners(a, b, c));
+    const Hit hit = test_one(ray, tests::corners(a, b, c));
     if (!hit.found()) {
       continue;
     }

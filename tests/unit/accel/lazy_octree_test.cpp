@@ -40,7 +40,7 @@ accel::BuildLimit any_limit() {
 }
 
 RC_GTEST_PROP(LazyTree, ExpandedInAnyOrderIsTheEagerTree, ()) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
+  const auto triangles = set_of(tests::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
   LazyOctreeOptions options;
   options.tree.max_objects = *rc::gen::inRange(1U, 20U);
   options.tree.max_level = *rc::gen::inRange(1U, 8U);
@@ -98,7 +98,7 @@ void check_part(const OctreeBuild& part, const Octree& eager) {
 }
 
 RC_GTEST_PROP(LazyTree, AnyRaysOnAnyThreadsGiveTheEagerTreesHitsAndNodes, ()) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
+  const auto triangles = set_of(tests::hostile_soup(0.0, *rc::gen::arbitrary<std::uint64_t>()));
   LazyOctreeOptions options;
   options.tree.max_objects = *rc::gen::inRange(1U, 10U);
   options.tree.max_level = *rc::gen::inRange(2U, 8U);
@@ -114,8 +114,7 @@ RC_GTEST_PROP(LazyTree, AnyRaysOnAnyThreadsGiveTheEagerTreesHitsAndNodes, ()) {
     RayMaker maker(*triangles, eager.bounds(), seed + offset);
     NullVisitor visitor;
     for (int k = 0; k < rays; ++k) {
-      const Ray ray = maker.make(
-          studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
+      const Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % tests::all_aims.size()]);
       different += test::same_bits(lazy.closest(ray, visitor), eager.closest(ray, visitor)) ? 0 : 1;
       different += lazy.occluded(ray, visitor) == eager.occluded(ray, visitor) ? 0 : 1;
     }
@@ -166,7 +165,7 @@ TEST(LazyTree, CountsNodesAndBytes) {
 
 // It can be used through the interface of all structures.
 TEST(LazyTree, IsAStructure) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 4));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 4));
   LazyOctreeOptions options;
   options.initial.level = 1;
   const std::unique_ptr<accel::Structure> lazy = accel::make_lazy_octree(triangles, options);
@@ -174,8 +173,7 @@ TEST(LazyTree, IsAStructure) {
   EXPECT_EQ(lazy->kind(), "lazy_octree");
   RayMaker maker(*triangles, lazy->bounds(), 2);
   for (int k = 0; k < 4000; ++k) {
-    const Ray ray = maker.make(
-        studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
+    const Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % tests::all_aims.size()]);
     ASSERT_TRUE(test::same_bits(lazy->closest(ray), brute->closest(ray)));
     ASSERT_EQ(lazy->occluded(ray), brute->occluded(ray));
   }
@@ -186,7 +184,7 @@ TEST(LazyTree, IsAStructure) {
 
 // It never differs silently from the eager tree: a ray that comes to the limit ends in an error.
 TEST(LazyTree, RefusesToBeCut) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 5));
   LazyOctreeOptions options;
   options.tree = {1, 10, 3000};
   options.initial.level = 1;

@@ -32,7 +32,7 @@ using accel::TriangleSet;
 
 // The level-by-level build against the definition, for any options and any number of threads, cut or not.
 RC_GTEST_PROP(OctreeBuilding, IsThatOfTheDefinitionAtAnyNumberOfThreads, ()) {
-  const auto triangles = set_of(studies::stability::hostile_soup(
+  const auto triangles = set_of(tests::hostile_soup(
       *rc::gen::element(0.0, 1e3), *rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<bool>()));
   OctreeOptions options;
   options.max_objects = *rc::gen::inRange(1U, 40U);
@@ -73,7 +73,7 @@ TEST(OctreeBuilding, DoesNotDependOnThreads) {
 
 // A tree built to a level is the top of the whole tree, which splits exactly the nodes left unsplit.
 TEST(OctreeBuilding, StopsAtALevel) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 3));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 3));
   const OctreeOptions options{4, 8};
   const accel::RootFrame frame = accel::make_frame(*triangles);
   const OctreeBuild whole = accel::build_octree(*triangles, options, frame);
@@ -124,7 +124,7 @@ TEST(OctreeBuilding, StopsByTheRatioOfLeaves) {
 }
 
 TEST(OctreeBuilding, EnclosesTheBoxGiven) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 3));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 3));
   OctreeOptions options{4, 8};
   options.enclose.include({-3.0, -1.5, 0.0});
   options.enclose.include({0.5, 2.0, 4.0});
@@ -148,7 +148,7 @@ TEST(OctreeBuilding, EnclosesTheBoxGiven) {
 
 // Sorting a node with Counted gives the same lists, and counts at least what each overlap test costs.
 TEST(OctreeBuilding, CountingASplitChangesNothing) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 6));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 6));
   const accel::RootFrame frame = accel::make_frame(*triangles);
   std::vector<std::uint32_t> all(triangles->size());
   for (std::uint32_t id = 0; id < all.size(); ++id) {

@@ -44,12 +44,12 @@ std::vector<scenes::Bounds> boxes_of(const Octree& octree) {
 }
 
 TEST(Octree, NodesAreBreadthFirstAndListsAscend) {
-  check_numbering(Octree::build(set_of(studies::stability::hostile_soup(0.0, 1)), {4, 8}), 8, 4);
+  check_numbering(Octree::build(set_of(tests::hostile_soup(0.0, 1)), {4, 8}), 8, 4);
 }
 
 // A leaf above the last level has too many triangles only where splitting would separate none of them.
 TEST(Octree, OverfullLeavesCouldNotBeSeparated) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 1));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 1));
   const Octree octree = Octree::build(triangles, {4, 8});
   const std::vector<scenes::Bounds> boxes = boxes_of(octree);
   int overfull = 0;
@@ -82,27 +82,27 @@ TEST(Octree, OverfullLeavesCouldNotBeSeparated) {
 // Every leaf lists every triangle that meets it, and none that stays more than 2 delta away from it.
 TEST(Octree, LeavesListWhatMeetsThem) {
   for (const double offset : {0.0, 1e6}) {
-    const Octree octree = Octree::build(set_of(studies::stability::hostile_soup(offset, 2)), {6, 6});
+    const Octree octree = Octree::build(set_of(tests::hostile_soup(offset, 2)), {6, 6});
     check_lists(octree, boxes_of(octree));
   }
 }
 
 // Front to back, at most four children of a branch, no leaf that the ray does not meet, none left out.
 TEST(Octree, WalksFrontToBackThroughTheLeavesOnTheRay) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 4));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 4));
   const Octree octree = Octree::build(triangles, {3, 7});
   EXPECT_GT(check_walks(octree, boxes_of(octree), 4), test::cases(20000U));
 }
 
 // The walk on vectors and the walk for any scalar take the same steps and find the same hits.
 TEST(Octree, CountingChangesNothing) {
-  check_counting(Octree::build(set_of(studies::stability::hostile_soup(0.0, 8)), {5, 10}));
+  check_counting(Octree::build(set_of(tests::hostile_soup(0.0, 8)), {5, 10}));
 }
 
 // Per branch: three averages, as HERO has it, and the comparisons that order the children.
 TEST(Octree, ABranchCostsThreeAverages) {
-  const auto triangles = set_of({studies::stability::corners({-1, -1, -1}, {-0.9, -1, -1}, {-1, -0.9, -1}),
-                                 studies::stability::corners({1, 1, 1}, {0.9, 1, 1}, {1, 0.9, 1})});
+  const auto triangles = set_of({tests::corners({-1, -1, -1}, {-0.9, -1, -1}, {-1, -0.9, -1}),
+                                 tests::corners({1, 1, 1}, {0.9, 1, 1}, {1, 0.9, 1})});
   const Octree octree = Octree::build(triangles, {1, 12});
   ASSERT_EQ(octree.topology().nodes.size(), 9U);
   const auto operations = [&](const Octree& tree, const Ray& ray) {
@@ -123,7 +123,7 @@ TEST(Octree, ABranchCostsThreeAverages) {
 }
 
 TEST(Octree, StaysWithinItsEntries) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 5));
   const std::size_t unlimited = Octree::build(triangles, {1, 10}).topology().entries.size();
   std::size_t last = 0;
   for (const std::uint64_t limit : {std::uint64_t{1}, std::uint64_t{1000}, std::uint64_t{10000}}) {
@@ -147,7 +147,7 @@ TEST(Octree, FlatScenesAreNotCutInTheirPlane) {
           p[(axis + 2) % 3] = y / 31.0;
           return p;
         };
-        sheet.push_back(studies::stability::corners(at(i, j), at(i + 1, j), at(i + 1, j + 1)));
+        sheet.push_back(tests::corners(at(i, j), at(i + 1, j), at(i + 1, j + 1)));
       }
     }
     const Octree octree = Octree::build(set_of(sheet), {4, 21});
@@ -159,7 +159,7 @@ TEST(Octree, FlatScenesAreNotCutInTheirPlane) {
 }
 
 TEST(Octree, RefusesOptionsOutOfRange) {
-  const auto triangles = set_of(studies::stability::hostile_soup(0.0, 5));
+  const auto triangles = set_of(tests::hostile_soup(0.0, 5));
   EXPECT_THROW((void)Octree::build(triangles, {0, 12}), sim::UserError);
   EXPECT_THROW((void)Octree::build(triangles, {8, 0}), sim::UserError);
   EXPECT_THROW((void)Octree::build(triangles, {8, 22}), sim::UserError);

@@ -58,12 +58,11 @@ std::vector<TriangleCorners> some_moved(std::vector<TriangleCorners> soup, std::
         break;
       case 2: {
         const glm::dvec3 p = random.in_box(lo, hi);
-        triangle = studies::stability::corners(p, p, p);
+        triangle = tests::corners(p, p, p);
         break;
       }
       default:
-        triangle =
-            studies::stability::corners(random.in_box(lo, hi), random.in_box(lo, hi), random.in_box(lo, hi));
+        triangle = tests::corners(random.in_box(lo, hi), random.in_box(lo, hi), random.in_box(lo, hi));
     }
   }
   return soup;
@@ -144,7 +143,7 @@ struct Moves {
 /// Several frames, each updated from the one before and compared with a fresh build.
 void check_frames(const OctreeOptions& options, std::uint64_t seed, bool with_quadrics,
                   const std::array<Moves, 3>& frames) {
-  std::vector<TriangleCorners> now = studies::stability::hostile_soup(0.0, seed);
+  std::vector<TriangleCorners> now = tests::hostile_soup(0.0, seed);
   // Spheres, cylinders and cones among them.
   std::vector<scenes::Quadric> quadrics;
   if (with_quadrics) {
@@ -234,7 +233,7 @@ TEST(OctreeUpdating, KeepsWhatIsFarFromTheMovedTriangles) {
 
 TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
   const OctreeOptions options = enclosing(2.0);
-  const std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 9);
+  const std::vector<TriangleCorners> soup = tests::hostile_soup(0.0, 9);
   const std::vector<TriangleCorners> moved = some_moved(soup, 4, 0.02);
   const Octree tree = Octree::build(set_of(soup), options);
   const auto after = set_of(moved);
@@ -256,7 +255,7 @@ TEST(OctreeUpdating, AltersExactlyWhatListsMovedTriangles) {
 // A lazy tree goes on from an update.
 TEST(OctreeUpdating, ALazyTreeGoesOnFromIt) {
   const OctreeOptions options = enclosing(2.0);
-  const std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 9);
+  const std::vector<TriangleCorners> soup = tests::hostile_soup(0.0, 9);
   const Octree tree = Octree::build(set_of(soup), options);
   const auto after = set_of(some_moved(soup, 4, 0.1));
   const OctreeUpdate update = accel::update_octree(tree, *after);
@@ -266,7 +265,7 @@ TEST(OctreeUpdating, ALazyTreeGoesOnFromIt) {
 }
 
 TEST(OctreeUpdating, RefusesAnotherRootOrOtherTriangles) {
-  std::vector<TriangleCorners> soup = studies::stability::hostile_soup(0.0, 2);
+  std::vector<TriangleCorners> soup = tests::hostile_soup(0.0, 2);
   const Octree tight = Octree::build(set_of(soup), {});
   std::vector<TriangleCorners> fewer(soup.begin(), soup.end() - 1);
   EXPECT_NE(test::user_error_of([&] {

@@ -128,7 +128,7 @@ TEST(BoxOverlap, NeverMissesWhatTouches) {
     const glm::dvec3 b =
         inside + size * random.direction() * std::ldexp(1.0, -static_cast<int>(random.below(30)));
     const glm::dvec3 c = inside + size * random.direction() * 8.0;
-    ASSERT_TRUE(accel::overlaps(studies::stability::corners(inside, b, c), center, half));
+    ASSERT_TRUE(accel::overlaps(tests::corners(inside, b, c), center, half));
   }
 }
 

@@ -358,7 +358,7 @@ TEST(Quadrics, DegenerateOnesAreRefused) {
 
 // Moving one primitive of a set is seen by the octree's update, whatever its kind.
 TEST(Quadrics, MovedOnesAreFound) {
-  const std::vector<accel::TriangleCorners> triangles = studies::stability::hostile_soup(0.0, 71);
+  const std::vector<accel::TriangleCorners> triangles = tests::hostile_soup(0.0, 71);
   std::vector<scenes::Quadric> quadrics = hostile_quadrics(0.0, 73);
   const TriangleSet before(triangles, quadrics);
   const auto first = static_cast<std::uint32_t>(triangles.size());

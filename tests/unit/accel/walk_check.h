@@ -214,7 +214,7 @@ std::uint64_t check_walks(const Structure& structure, const std::vector<scenes::
     });
   };
   for (int k = 0; k < test::cases(6000) && !::testing::Test::HasFatalFailure(); ++k) {
-    check(maker.make(studies::stability::all_aims[static_cast<std::size_t>(k) % 6]));
+    check(maker.make(tests::all_aims[static_cast<std::size_t>(k) % 6]));
   }
   return leaves;
 }
@@ -224,8 +224,7 @@ template <class Structure>
 void check_counting(const Structure& structure) {
   RayMaker maker(structure.triangles(), structure.bounds(), 9);
   for (int k = 0; k < test::cases(60000); ++k) {
-    const accel::Ray ray = maker.make(
-        studies::stability::all_aims[static_cast<std::size_t>(k) % studies::stability::all_aims.size()]);
+    const accel::Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % tests::all_aims.size()]);
     Recorder plain;
     Recorder counted;
     const accel::Hit expected = structure.closest(ray, plain);

@@ -1,5 +1,5 @@
-// Rays that leave a surface: they must not meet it again. Closed meshes at every scale and far from the
-// origin are cases of `marti study stability`.
+// Rays that leave a surface: they must not meet it again. tests/stability has closed meshes at every scale
+// and far from the origin.
 #include <array>
 #include <cmath>
 #include <random>
@@ -9,7 +9,7 @@
 
 #include "processors/program/shading.h"
 #include "program_scenes.h"
-#include "studies/stability/icosphere.h"
+#include "tests/support/icosphere.h"
 #include "tests/support/long_tests.h"
 
 namespace marti::processors {
@@ -20,7 +20,7 @@ namespace {
 
 /// A unit sphere, wound counter-clockwise seen from outside.
 scenes::Scene icosphere() {
-  const studies::stability::Icosphere sphere(3);
+  const tests::Icosphere sphere(3);
   scenes::Scene scene;
   scene.materials.emplace_back();
   scene.positions = sphere.vertices;

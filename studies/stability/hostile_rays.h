@@ -1,5 +1,4 @@
-// Triangles and rays that break careless structures. Everything is made from seeds, the same on every
-// machine.
+// Rays that break careless structures, made from seeds: the same on every computer.
 #pragma once
 
 #include <algorithm>
@@ -45,84 +44,28 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-inline accel::TriangleCorners corners(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  return {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
-}
-
-/// About 310 triangles in the cube [-1, 1]^3 moved by `offset`: random ones, needles, a fan, a coplanar
-/// sheet, triangles in the mid-planes and in the faces of the cube, coincident ones, tiny ones and degenerate
-/// ones; with `huge` also two far larger than the cube, so that all the rest crowds into a few cells.
-inline std::vector<accel::TriangleCorners> hostile_soup(double offset, std::uint64_t seed,
-                                                        bool huge = false) {
-  Random random(seed);
-  const glm::dvec3 o(offset);
-  const glm::dvec3 lo(-0.75);
-  const glm::dvec3 hi(0.75);
-  std::vector<accel::TriangleCorners> soup;
-  const auto add = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    soup.push_back(corners(o + a, o + b, o + c));
-  };
-  for (int i = 0; i < 100; ++i) {
-    const glm::dvec3 a = random.in_box(lo, hi);
-    add(a, a + 0.2 * random.direction(), a + 0.2 * random.direction());
-  }
-  for (int i = 0; i < 60; ++i) {  // needles
-    const glm::dvec3 a = random.in_box(lo, hi);
-    const glm::dvec3 b = random.in_box(lo, hi);
-    add(a, b, b + std::ldexp(1.0, -static_cast<int>(random.below(50))) * random.direction());
-  }
-  const glm::dvec3 apex = 0.5 * random.in_box(lo, hi);
-  for (int i = 0; i < 24; ++i) {  // closed fan
-    const double s = 0.2617993877991494;
-    add(apex, apex + 0.5 * glm::dvec3(std::cos(i * s), std::sin(i * s), 0.3),
-        apex + 0.5 * glm::dvec3(std::cos((i + 1) % 24 * s), std::sin((i + 1) % 24 * s), 0.3));
-  }
-  for (int i = 0; i < 5; ++i) {  // coplanar sheet, its lines on cell planes
-    for (int j = 0; j < 5; ++j) {
-      const glm::dvec3 p(0.25 * i - 0.75, 0.25 * j - 0.75, 0.25);
-      add(p, p + glm::dvec3(0.25, 0, 0), p + glm::dvec3(0.25, 0.25, 0));
-      add(p + glm::dvec3(0.25, 0.25, 0), p + glm::dvec3(0, 0.25, 0), p);
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis) {  // in the middle of everything
-    glm::dvec3 a(-0.7);
-    glm::dvec3 b(0.6);
-    glm::dvec3 c(0.1, 0.5, -0.4);
-    a[axis] = b[axis] = c[axis] = 0.0;
-    add(a, b, c);
-  }
-  const glm::dvec3 p = random.in_box(lo, hi);
-  const glm::dvec3 q = random.in_box(lo, hi);
-  const glm::dvec3 r = random.in_box(lo, hi);
-  for (int i = 0; i < 30; ++i) {  // coincident
-    add(p, q, r);
-  }
-  add({-1, -1, -1}, {1, -1, -1}, {1, 1, -1});  // faces and corners of the cube
-  add({1, 1, -1}, {-1, 1, -1}, {-1, -1, -1});
-  add({1, 1, 1}, {1, 0, 1}, {0, 1, 1});
-  if (huge) {
-    add({-40, -30, -0.9}, {50, -20, -0.9}, {0, 60, -0.91});
-    add({-400, 0.3, -300}, {0.5, 0.3, 600}, {500, 0.3, -200});
-  }
-  for (int i = 0; i < 40; ++i) {  // tiny
-    const double size = std::ldexp(1.0, -8 - static_cast<int>(random.below(30)));
-    const glm::dvec3 a = random.in_box(lo, hi);
-    add(a, a + size * random.direction(), a + size * random.direction());
-  }
-  add(p, p, p);  // degenerate
-  add(p, q, p);
-  add({0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 0.5, 0.5});
-  return soup;
-}
+/// The largest magnitude of a coordinate.
+inline double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Classes of rays.
-enum class Aim : std::uint8_t { random, axis, cell_face, vertex, edge, corner, denormal, far, inside };
-inline constexpr std::array<Aim, 9> all_aims{Aim::random,   Aim::axis, Aim::cell_face,
-                                             Aim::vertex,   Aim::edge, Aim::corner,
-                                             Aim::denormal, Aim::far,  Aim::inside};
+enum class Aim : std::uint8_t {
+  random,
+  axis,
+  cell_face,
+  vertex,
+  edge,
+  corner,
+  denormal,
+  far,
+  inside,
+  grazing
+};
+inline constexpr std::array<Aim, 10> all_aims{Aim::random, Aim::axis,   Aim::cell_face, Aim::vertex,
+                                              Aim::edge,   Aim::corner, Aim::denormal,  Aim::far,
+                                              Aim::inside, Aim::grazing};
 
-/// Makes rays at a set's triangles, of which it needs one. `box` is the root box of the structure whose
-/// planes the rays of cell_face and corner are to lie in.
+/// Makes rays at a set's triangles; without any, at points of `box` instead. `box` is the root box of the
+/// structure whose planes the rays of cell_face and corner are to lie in.
 class RayMaker {
  public:
   RayMaker(const accel::TriangleSet& triangles, const scenes::Bounds& box, std::uint64_t seed)
@@ -131,7 +74,7 @@ class RayMaker {
   accel::Ray make(Aim aim) {
     accel::Ray ray;
     const glm::dvec3 extent = box_.hi - box_.lo;
-    const double size = std::max({extent.x, extent.y, extent.z});
+    const double size = largest(extent);
     ray.origin = random_.in_box(box_.lo - 0.5 * extent, box_.hi + 0.5 * extent);
     switch (aim) {
       case Aim::random:
@@ -141,11 +84,10 @@ class RayMaker {
         ray.origin = random_.in_box(box_.lo, box_.hi);
         ray.direction = random_.direction();
         break;
-      case Aim::axis: {
+      case Aim::axis:
         ray.origin = on_planes(ray.origin, random_.below(8));
         ray.direction = axis_direction();
         break;
-      }
       case Aim::cell_face: {
         const std::uint32_t axis = random_.below(3);
         ray.origin = on_planes(ray.origin, 1U << axis);
@@ -157,10 +99,7 @@ class RayMaker {
         ray.direction = aim_at(ray.origin, vertex());
         break;
       case Aim::edge: {
-        const std::uint32_t id = random_.below(triangles_.triangles());
-        const unsigned k = random_.below(3);
-        const glm::dvec3 a = triangles_.corner(id, k);
-        const glm::dvec3 b = triangles_.corner(id, (k + 1) % 3);
+        const auto [a, b, c] = triangle();
         ray.direction = aim_at(ray.origin, a + random_.unit() * (b - a));
         break;
       }
@@ -195,6 +134,13 @@ class RayMaker {
             aim_at(ray.origin, random_.below(2) != 0 ? vertex() : random_.in_box(box_.lo, box_.hi));
         break;
       }
+      case Aim::grazing: {  // in a triangle's plane, but for rounding
+        const auto [a, b, c] = triangle();
+        ray.origin = a + random_.between(-4.0, 4.0) * (b - a) + random_.between(-4.0, 4.0) * (c - a);
+        ray.direction =
+            aim_at(ray.origin, a + 0.5 * random_.unit() * (b - a) + 0.5 * random_.unit() * (c - a));
+        break;
+      }
     }
     if (ray.direction == glm::dvec3(0.0)) {
       ray.direction = random_.direction();
@@ -209,7 +155,18 @@ class RayMaker {
     const glm::dvec3 d = at - from;
     return random_.below(2) != 0 ? d : d * (1.0 / std::sqrt(std::max(glm::dot(d, d), 1e-300)));
   }
-  glm::dvec3 vertex() { return triangles_.corner(random_.below(triangles_.triangles()), random_.below(3)); }
+  /// The corners of a triangle, beginning with any of them.
+  std::array<glm::dvec3, 3> triangle() {
+    std::array<glm::dvec3, 3> corners;
+    const std::uint32_t id = triangles_.triangles() == 0 ? 0 : random_.below(triangles_.triangles());
+    const unsigned first = random_.below(3);
+    for (unsigned k = 0; k < 3; ++k) {
+      corners[k] = triangles_.triangles() == 0 ? random_.in_box(box_.lo, box_.hi)
+                                               : triangles_.corner(id, (first + k) % 3);
+    }
+    return corners;
+  }
+  glm::dvec3 vertex() { return triangle()[0]; }
   glm::dvec3 axis_direction() {
     glm::dvec3 d(random_.below(2) != 0 ? 0.0 : -0.0, random_.below(2) != 0 ? 0.0 : -0.0,
                  random_.below(2) != 0 ? 0.0 : -0.0);

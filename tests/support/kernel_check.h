@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "accel/watertight.h"
-#include "studies/stability/hostile.h"
+#include "tests/contract/hostile.h"
 
-namespace marti::studies::stability {
+namespace marti::tests {
 
 inline int sign(double x) { return x > 0.0 ? 1 : (x < 0.0 ? -1 : 0); }
 
@@ -59,4 +59,4 @@ struct TestCounter {
   }
 };
 
-}  // namespace marti::studies::stability
+}  // namespace marti::tests

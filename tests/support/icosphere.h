@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace marti::studies::stability {
+namespace marti::tests {
 
 /// An icosahedron, each face cut into four `times` times, on the unit sphere.
 struct Icosphere {
@@ -67,4 +67,4 @@ struct Icosphere {
   }
 };
 
-}  // namespace marti::studies::stability
+}  // namespace marti::tests

@@ -12,7 +12,7 @@
 #include "processors/replay/replay.h"
 #include "sim/time.h"
 
-namespace marti::studies::stability {
+namespace marti::tests {
 
 /// D/D/1//N: every node computes for `think`, then reads from a held bus for `service`, `reads` times. A node
 /// has one pixel; it shades `reads` points and then adds `lights` lights, which takes `after`. If `lights` is
@@ -83,4 +83,4 @@ struct Cyclic {
   sim::Ticks after = 0;
 };
 
-}  // namespace marti::studies::stability
+}  // namespace marti::tests
