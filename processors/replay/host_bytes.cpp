@@ -1,6 +1,5 @@
 #include "processors/replay/host_bytes.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "memory/cache.h"
@@ -71,20 +70,8 @@ std::uint64_t host_bytes(const machine::MachineConfig& config) {
          config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
-machine::MachineConfig without_idle_contexts(const program::WorkLog& log,
-                                             const machine::MachineConfig& config) {
-  machine::MachineConfig used = config;
-  // Where the tree is built, nodes ask when they have built their part, one before another.
-  if (config.contexts > 1 && config.build.sharing == machine::Sharing::given) {
-    const std::uint64_t packets = machine::packets_of_image(log.width, log.height, config.packets);
-    const std::uint64_t each = (packets + config.all_nodes() - 1) / config.all_nodes();
-    used.contexts = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(each, 1, config.contexts));
-  }
-  return used;
-}
-
 std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config) {
-  std::uint64_t bytes = host_bytes(without_idle_contexts(log, config));
+  std::uint64_t bytes = host_bytes(config);
   if (config.packets.order != machine::PacketOrder::scanline) {
     bytes += sizeof(std::uint32_t) * machine::packets_of_image(log.width, log.height, config.packets);
   }

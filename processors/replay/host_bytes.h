@@ -8,11 +8,6 @@
 
 namespace marti::processors::replay {
 
-/// The machine without contexts that never get a packet of the frame, because the first requests of all are
-/// for more packets than there are. It has the same results, but for the requests of these contexts.
-[[nodiscard]] machine::MachineConfig without_idle_contexts(const program::WorkLog& log,
-                                                           const machine::MachineConfig& config);
-
 /// Host bytes that a replay of the machine takes for its nodes and their tags, approximately.
 [[nodiscard]] std::uint64_t host_bytes(const machine::MachineConfig& config);
 
