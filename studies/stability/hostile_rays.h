@@ -166,7 +166,13 @@ class RayMaker {
     }
     return corners;
   }
-  glm::dvec3 vertex() { return triangle()[0]; }
+  glm::dvec3 vertex() {
+    if (triangles_.triangles() == 0) {
+      return random_.in_box(box_.lo, box_.hi);
+    }
+    const unsigned corner = random_.below(3);
+    return triangles_.corner(random_.below(triangles_.triangles()), corner);
+  }
   glm::dvec3 axis_direction() {
     glm::dvec3 d(random_.below(2) != 0 ? 0.0 : -0.0, random_.below(2) != 0 ? 0.0 : -0.0,
                  random_.below(2) != 0 ? 0.0 : -0.0);

@@ -21,11 +21,12 @@ const std::string small_errors =
 
 TEST(StudyError, AnswersFirstAndWritesOnePicture) {
   const TemporaryDirectory directory;
-  EXPECT_GE(expect_study("error " + small_errors, directory.path(),
-                         {"Frame time: ", "Image, samples: ", "The error falls as samples^",
-                          "by an exact run", "smaller image", "fewer samples", "voxel cut", "results.sqlite"},
-                         {"host_error.csv", "host_error.vl.json", "host_error_answer.csv"}),
-            2);
+  EXPECT_GE(
+      expect_study("error " + small_errors, directory.path(),
+                   {"Frame time, in ", "Image by samples, in ", "The error of samples goes as samples^p",
+                    "by an exact run", "smaller image", "fewer samples", "voxel cut", "results.sqlite"},
+                   {"host_error.csv", "host_error.vl.json", "host_error_answer.csv"}),
+      2);
   // The page begins with the study's answer.
   const fs::path page = directory.path() / "page.html";
   ASSERT_EQ(marti("report " + quoted(directory.path() / "a") + " -o " + quoted(page)).status, 0);

@@ -18,7 +18,8 @@ TEST(MachineCommand, ThePipelineTakesTheStepsOfTheImageSchemeAndSaysHowBusyItsSt
   EXPECT_EQ(moving["figures"]["frame"], whole["figures"]["frame"]);
   const nlohmann::json& machine = moving["machine"];
   EXPECT_EQ(machine["scheme"], "pipeline");
-  EXPECT_EQ(machine["one_node_time_ps"], whole["machine"]["one_node_time_ps"]);
+  // Its base takes the same steps but writes no pixels and waits for no packets.
+  EXPECT_LT(machine["one_node_time_ps"], whole["machine"]["one_node_time_ps"]);
   const nlohmann::json& figures = moving["figures"]["machine"];
   for (const auto& [name, count] : figures.items()) {
     if (name.starts_with("steps_")) {

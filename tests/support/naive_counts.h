@@ -94,7 +94,7 @@ class NaiveCounts {
         cells[{row.bounce, static_cast<std::uint32_t>(row.ray), row.level,
                static_cast<std::size_t>(row.record), row.splitting}] = {
             row.counts.references, row.counts.misses, row.counts.second_level_hits,
-            waits ? row.counts.waited() : 0};
+            waits ? static_cast<std::int64_t>(row.counts.waited()) : 0};
       }
       std::map<Key, Cell> expected = cells_;
       for (auto& [key, cell] : expected) {

@@ -98,8 +98,8 @@ nlohmann::ordered_json four_points() {
       R"({"axis": 0, "start": 2, "fastest": 0, "ordinal": [0, 1, 2, 4], "place": [[0, 1, 0, 1], [0, 0, 1, 1]],
           "axes": [{"name": "size", "texts": ["1 KiB", "2 KiB"], "values": [1024, 2048], "numeric": true, "x": {}},
                    {"name": "kind", "texts": ["bus", "ideal"], "values": [], "numeric": false}],
-          "fronts": {"price": [3]}, "models": {},
-          "columns": {"end": [1.5, 2, null, 4], "price": [1, 2, 3, 4]}})");
+          "fronts": {"price": [3]},
+          "columns": {"end": [1.5, 2, null, 4], "bound": [1, 1, 1, 1], "price": [1, 2, 3, 4]}})");
 }
 
 class Plots : public testing::Test {
@@ -172,53 +172,38 @@ TEST_F(Plots, HaveBarsForNamesAndColoursForAnotherAxis) {
   const std::vector<Plot> sizes = drawn(0, nullptr);
   EXPECT_THAT(sizes[0].content, HasSubstr("Time over size"));
   EXPECT_THAT(sizes[0].content, testing::Not(HasSubstr("ordinal: 4; colour")));
-  EXPECT_EQ(
-      sizes[1].content,
-      "kind,zone,ordinal,value,ms,x\r\nexact,between,2,1 KiB,,1024\r\nexact,between,4,2 KiB,4,2048\r\n");
+  EXPECT_EQ(sizes[1].content,
+            "kind,ordinal,value,ms,ms_bound,x\r\nexact,2,1 KiB,,1,1024\r\nexact,4,2 KiB,4,1,2048\r\n");
   const std::vector<Plot> coloured = drawn(0, 1);
-  EXPECT_THAT(coloured[1].content, HasSubstr("other,between,0,bus,1 KiB,1.5,1024\r\n"));
-  EXPECT_THAT(coloured[1].content, HasSubstr("exact,between,4,ideal,2 KiB,4,2048\r\n"));
+  EXPECT_THAT(coloured[1].content, HasSubstr("other,0,bus,1 KiB,1.5,1,1024\r\n"));
+  EXPECT_THAT(coloured[1].content, HasSubstr("exact,4,ideal,2 KiB,4,1,2048\r\n"));
   EXPECT_THAT(coloured[0].content, HasSubstr("mark-line"));
   const std::vector<Plot> names = drawn(1, 0);
   EXPECT_THAT(names[0].content, HasSubstr("Time over kind"));
   EXPECT_THAT(names[0].content, HasSubstr("roledescription=\"bar\""));
   EXPECT_THAT(names[0].content, testing::Not(HasSubstr("mark-line")));
-  EXPECT_THAT(names[1].content, HasSubstr("exact,between,0,1 KiB,bus,1.5\r\n"));
-  EXPECT_THAT(names[1].content, HasSubstr("other,between,4,2 KiB,ideal,4\r\n"));
+  EXPECT_THAT(names[1].content, HasSubstr("exact,0,1 KiB,bus,1.5,1\r\n"));
+  EXPECT_THAT(names[1].content, HasSubstr("other,4,2 KiB,ideal,4,1\r\n"));
 }
 
-// A curve of the model with its bands, zones and saturation, worked out by hand: errors are factors of 1.25
-// between the points and of 2 beyond them; at a point the band has no width.
-TEST_F(Plots, HaveTheCurveOfTheExplorer) {
+// Simulated points with bounds, the ideal and the saturation of the last point.
+TEST_F(Plots, HaveBoundAndSaturationOfThePoints) {
   const ReportChart curve = live_chart("over_axis", "curve", "T", {{"rows", "explorer"}},
                                        {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}});
   ReportData report = report_of({curve});
   report.explorer = nlohmann::ordered_json::parse(
       R"({"axis": 0, "start": 0, "place": [[0, 1, 2]], "ordinal": [0, 1, 2],
           "axes": [{"name": "machine.nodes", "texts": ["1", "2", "4"], "values": [1, 2, 4], "numeric": true}],
-          "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1]},
-          "models": {"0": {"x": [1, 2, 3, 4, 8],
-            "error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": true, "p95": 1}},
-            "speed_up_error": {"between": {"known": true, "p95": 0.25}, "beyond": {"known": false}},
-            "curves": {"*": {"ms": [8, 4, 3, 2, 1], "bound": [8, 4, 2, 2, 2], "base": 8, "saturation": 3}}}}})");
+          "columns": {"end": [8, 4, 2], "speed_up": [1, 2, 4], "efficiency": [1, 1, 1],
+                      "bound": [8, 2, 1], "saturation": [5, 4, 3]}})");
   const std::vector<Plot> plots = draw_plots(report, directory_, /*pdf=*/false);
   ASSERT_EQ(plots.size(), 2U);
-  EXPECT_EQ(
-      plots[1].content,
-      "kind,zone,x,x2,ms,ms_low,ms_high,ms_bound,ideal,speed_up,speed_up_low,speed_up_high,speed_up_bound,"
-      "ordinal,value\r\n"
-      "zone,above,4,8,,,,,,,,,,,\r\n"
-      "saturation,,3,,,,,,,,,,,,\r\n"
-      "model,below,1,,8,8,8,8,1,,,,,,\r\n"
-      "model,between,1,,8,8,8,8,1,1,1,1,1,,\r\n"
-      "model,between,2,,4,4,4,4,2,2,2,2,2,,\r\n"
-      "model,between,3,,3,2.4,3.75,2,3,2.6666666666666665,2.1333333333333333,3.333333333333333,4,,\r\n"
-      "model,between,4,,2,2,2,2,4,4,4,4,4,,\r\n"
-      "model,above,4,,2,2,2,2,4,,,,,,\r\n"
-      "model,above,8,,1,0.5,2,2,8,,,,,,\r\n"
-      "exact,between,1,,8,,,,1,1,,,,0,1\r\n"
-      "exact,between,2,,4,,,,2,2,,,,1,2\r\n"
-      "exact,between,4,,2,,,,4,4,,,,2,4\r\n");
+  EXPECT_EQ(plots[1].content,
+            "kind,ordinal,value,ms,ms_bound,x,speed_up,speed_up_bound,ideal\r\n"
+            "exact,0,1,8,8,1,1,1,1\r\n"
+            "exact,1,2,4,2,2,2,4,2\r\n"
+            "exact,2,4,2,1,4,4,8,4\r\n"
+            "saturation,,,,,3,,,\r\n");
 }
 
 TEST_F(Plots, AreTheSameBytesAgain) {

@@ -38,7 +38,7 @@ double real(const Cell& cell) {
   return value == nullptr ? NAN : *value;
 }
 
-std::optional<std::int64_t> counter(std::size_t machine, std::string_view name) {
+std::optional<Count> counter(std::size_t machine, std::string_view name) {
   for (std::size_t i = 0; i < counted_figures().size(); ++i) {
     if (counted_figures()[i].name == name) {
       return made_row(machine).counters[i];

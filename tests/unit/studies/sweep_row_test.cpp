@@ -170,17 +170,17 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
 void expect_counts_that_add_up(const processors::program::WorkLog& log, const MachineConfig& machine) {
   const MachineResult result = processors::replay::replay(log, machine);
   auto values = named(sweep_row(machine, result));
-  std::int64_t classed = 0;
+  figures::Count classed = 0;
   for (const std::string_view name : memory::miss_class_names) {
     classed += values.at("all_misses_" + std::string(name)).value_or(0);
   }
   EXPECT_EQ(classed, values.at("misses"));
   EXPECT_EQ(values.at("sharing_fetches"), values.at("misses"));
-  std::int64_t attributed = 0;
+  figures::Count attributed = 0;
   for (const std::string_view ray : processors::program::ray_kind_names) {
     attributed += values.at(std::string(ray) + "_ray_misses").value_or(0);
   }
-  const std::int64_t split = values.at("split_misses").value_or(-1);
+  const figures::Count split = values.at("split_misses").value_or(-1);
   EXPECT_EQ(split > 0, machine.build.sharing != processors::machine::Sharing::given);
   attributed += split;
   EXPECT_EQ(attributed, values.at("misses"));
