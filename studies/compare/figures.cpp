@@ -180,7 +180,8 @@ std::int64_t rounded_mean(sim::Sum sum, std::int64_t nodes) {
 }
 
 double mean(sim::Sum sum, std::int64_t nodes) {
-  return static_cast<double>(sum / nodes) + static_cast<double>(sum % nodes) / static_cast<double>(nodes);
+  const sim::Sum whole = sum / nodes;
+  return static_cast<double>(whole) + static_cast<double>(sum % nodes) / static_cast<double>(nodes);
 }
 
 }  // namespace

@@ -71,11 +71,13 @@ MeshEdges::MeshEdges(const accel::TriangleSet& triangles) : triangles_(triangles
 
 std::optional<std::uint32_t> MeshEdges::neighbour(std::uint32_t triangle, unsigned first) const {
   const auto [low, high] = std::minmax({id(triangle, first), id(triangle, (first + 1) % 3)});
-  const auto both = std::ranges::equal_range(sides_, std::array{low, high}, {}, &Side::first);
-  if (both.size() != 2 || both[0].second == both[1].second) {
+  const std::array ends = {low, high};
+  const auto begin = std::ranges::lower_bound(sides_, ends, {}, &Side::first);
+  const auto end = std::ranges::upper_bound(sides_, ends, {}, &Side::first);
+  if (end - begin != 2 || begin[0].second == begin[1].second) {
     return std::nullopt;
   }
-  return both[0].second == triangle ? both[1].second : both[0].second;
+  return begin[0].second == triangle ? begin[1].second : begin[0].second;
 }
 
 unsigned MeshEdges::third(std::uint32_t triangle, unsigned first, std::uint32_t other) const {

@@ -85,7 +85,7 @@ sim::Config config_of(const SweepPlan& plan, const SweepMachine& machine, const 
 
 Advice measure(const SweepPlan& plan, const SweepMachine& machine, const processors::program::WorkLog& log,
                const sim::MemoryBudget& memory, helps::Work budget) {
-  const sim::Schema schema = sweep_schema();
+  const sim::Schema& schema = sweep_schema();
   sim::Config config = config_of(plan, machine, schema);
   const processors::machine::MachineConfig described = keys::read_machine(config);
   helps::SharedLog shared{log, nullptr, {}, memory};
@@ -118,7 +118,8 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
   }
   std::vector<std::size_t> machines = machines_that_matter(plan, store);
   const std::vector<std::int64_t> taken = store.sums(replay_of_sweep);
-  const helps::Work budget = std::reduce(taken.begin(), taken.end(), helps::Work{0}) / part_of_sweep;
+  const helps::Work budget =
+      static_cast<helps::Work>(std::reduce(taken.begin(), taken.end(), std::int64_t{0})) / part_of_sweep;
   const auto enough = std::max(
       least_work, replays_of_one * static_cast<helps::Work>(store.sums(replay_alone)[machines.front()]));
   machines.resize(
