@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_advised = 12;
 constexpr std::size_t least_advised = 2;
-constexpr helps::Work least_work = 100'000'000;  // for one machine; enough for a small frame
+constexpr helps::Work least_work = 500'000'000;  // for one machine; half a second
 constexpr helps::Work part_of_sweep = 10;
 constexpr helps::Work replays_of_one = 16;  // that a machine's advice should have, at least
 
@@ -120,20 +120,26 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
   const std::vector<std::int64_t> taken = store.sums(replay_of_sweep);
   const helps::Work budget =
       static_cast<helps::Work>(std::reduce(taken.begin(), taken.end(), std::int64_t{0})) / part_of_sweep;
-  const auto enough = std::max(
-      least_work, replays_of_one * static_cast<helps::Work>(store.sums(replay_alone)[machines.front()]));
+  const std::vector<helps::Work> alone =
+      sim::mapped(store.sums(replay_alone), [](std::int64_t work) { return static_cast<helps::Work>(work); });
+  const helps::Work enough = std::max(least_work, replays_of_one * alone[machines.front()]);
   machines.resize(
       std::min(machines.size(), std::clamp<std::size_t>(budget / enough, least_advised, most_advised)));
+  const helps::Work of_each = std::max(least_work, budget / machines.size());
   const std::vector<bool> advised = store.advised();
   for (const std::size_t index : machines) {
     if (advised[index]) {
       continue;
     }
+    if (alone[index] > of_each) {  // the machine itself is replayed once more, too
+      save(index,
+           {"not measured: replays of this machine take long; `marti run --what-helps` measures it", {}, {}});
+      continue;
+    }
     const SweepMachine& machine = plan.machines[index];
     const FrameLog frame = trace(machine.frame);
     const std::uint64_t taken = std::min(memory.left(), memory_of(*frame.log));
-    save(index, measure(plan, machine, *frame.log, sim::MemoryBudget(memory.left() - taken),
-                        std::max(least_work, budget / machines.size())));
+    save(index, measure(plan, machine, *frame.log, sim::MemoryBudget(memory.left() - taken), of_each));
   }
 }
 
