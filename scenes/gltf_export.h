@@ -12,9 +12,8 @@
 //   of a camera, { "at": [x,y,z], "up": [x,y,z] };
 //   of a light, { "color": [r,g,b], "direction": [x,y,z], "cos_inner_cone": x, "cos_outer_cone": x,
 //     "inverse_square": false when its intensity does not fall off };
-//   of the file, { "background": [r,g,b], "ambient": [r,g,b], "lights_are_all": true when no light is
-//   missing,
-//     even if there is none }.
+//   of the file, { "background": [r,g,b], "ambient": [r,g,b], "lights_are_all": true when the
+//     lights of the file are all that the scene has, so that a file without lights stays dark }.
 // Values other than a material's and the file's count only where they still agree with the file's own. Notes
 // and polygon numbers are not kept.
 #pragma once

@@ -34,11 +34,14 @@ Work references_of(const processors::replay::MachineResult& result) {
 
 }  // namespace
 
+Work whole_replay_work(Work references, Work events) {
+  return walked_reference * references + event * events;
+}
+
 Work replay_work(const processors::replay::MachineResult& result,
                  const processors::walk::StrippedLog* stripped) {
-  const Work walking = stripped != nullptr ? stripped_reference * stripped->references()
-                                           : walked_reference * references_of(result);
-  return walking + event * result.events;
+  return stripped != nullptr ? stripped_reference * stripped->references() + event * result.events
+                             : whole_replay_work(references_of(result), result.events);
 }
 
 Work run_work(const processors::program::LogTotals& totals, const processors::replay::MachineResult& machine,

@@ -22,6 +22,9 @@ using Work = std::uint64_t;
 
 inline constexpr Work unlimited_work = std::numeric_limits<Work>::max();
 
+/// Of one replay that walks the whole work log, by the lines that it touches and its events.
+[[nodiscard]] Work whole_replay_work(Work references, Work events);
+
 /// Of one replay, from what it counted. `stripped`: the log that it walked; null: the whole work log.
 [[nodiscard]] Work replay_work(const processors::replay::MachineResult& result,
                                const processors::walk::StrippedLog* stripped);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -27,10 +26,10 @@ constexpr helps::Work least_work = 500'000'000;  // for one machine; half a seco
 constexpr helps::Work part_of_sweep = 10;
 constexpr helps::Work replays_of_one = 16;  // that a machine's advice should have, at least
 
-// About the nanoseconds of a replay (studies/helps/work.h) by the machine's counters: in a sweep, where
-// machines share stripped logs, and alone. Found by timing 1,000 machines of configs/sweep.toml.
-constexpr const char* replay_of_sweep = "2 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 25 * events";
-constexpr const char* replay_alone = "4 * (COALESCE(hits, 0) + COALESCE(misses, 0)) + 80 * events";
+// Of the replays of a sweep, whose machines share stripped logs. Found by timing 1,000 machines of
+// configs/sweep.toml; helps::whole_replay_work is that of a replay by itself.
+constexpr helps::Work sweep_reference = 2;
+constexpr helps::Work sweep_event = 25;
 
 // Whether two frames were rendered alike: trees that were built otherwise give the same rays and pixels.
 bool is_same_work(const FrameRow& a, const FrameRow& b) {
@@ -117,11 +116,17 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
     return;
   }
   std::vector<std::size_t> machines = machines_that_matter(plan, store);
-  const std::vector<std::int64_t> taken = store.sums(replay_of_sweep);
-  const helps::Work budget =
-      static_cast<helps::Work>(std::reduce(taken.begin(), taken.end(), std::int64_t{0})) / part_of_sweep;
-  const std::vector<helps::Work> alone =
-      sim::mapped(store.sums(replay_alone), [](std::int64_t work) { return static_cast<helps::Work>(work); });
+  const std::vector<std::int64_t> references = store.sums("COALESCE(hits, 0) + COALESCE(misses, 0)");
+  const std::vector<std::int64_t> events = store.sums("events");
+  helps::Work of_sweep = 0;
+  std::vector<helps::Work> alone;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const auto touched = static_cast<helps::Work>(references[i]);
+    const auto happened = static_cast<helps::Work>(events[i]);
+    of_sweep += sweep_reference * touched + sweep_event * happened;
+    alone.push_back(helps::whole_replay_work(touched, happened));
+  }
+  const helps::Work budget = of_sweep / part_of_sweep;
   const helps::Work enough = std::max(least_work, replays_of_one * alone[machines.front()]);
   machines.resize(
       std::min(machines.size(), std::clamp<std::size_t>(budget / enough, least_advised, most_advised)));
@@ -138,8 +143,8 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
     }
     const SweepMachine& machine = plan.machines[index];
     const FrameLog frame = trace(machine.frame);
-    const std::uint64_t taken = std::min(memory.left(), memory_of(*frame.log));
-    save(index, measure(plan, machine, *frame.log, sim::MemoryBudget(memory.left() - taken), of_each));
+    const std::uint64_t bytes = std::min(memory.left(), memory_of(*frame.log));
+    save(index, measure(plan, machine, *frame.log, sim::MemoryBudget(memory.left() - bytes), of_each));
   }
 }
 

@@ -12,7 +12,8 @@ namespace marti::studies::report {
 /// these counters is shorter. All links count as equally busy, and all banks.
 [[nodiscard]] double bound_of(const ReportPoint& point);
 
-/// The number of nodes of a cluster from which on the busiest queue limits; std::nullopt where there is none.
+/// The number of nodes of a cluster from which on the busiest queue limits; std::nullopt for a
+/// machine without queues.
 [[nodiscard]] std::optional<double> saturation_of(const ReportPoint& point);
 
 }  // namespace marti::studies::report
