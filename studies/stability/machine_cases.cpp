@@ -281,7 +281,10 @@ CaseOutcome caches(const Subject& subject) {
     return machine;
   };
   const std::uint32_t line = base.cache.cache.line;
-  const std::uint64_t all = std::bit_ceil(replay_all(subject, base).database_bytes + line);
+  // Every address of the database, the gaps before its sections included: then no two lines of it share a set.
+  const std::uint64_t all =
+      std::bit_ceil(replay_all(subject, base).database_bytes + line +
+                    memory::record_kinds * std::uint64_t{base.layout.section_alignment});
   const MachineConfig largest = with({all, line, memory::full_ways});
   if (!fits(subject, largest)) {
     return not_tried("caches of the whole database are too large for this computer");
@@ -300,7 +303,7 @@ CaseOutcome caches(const Subject& subject) {
                                            {all, line, memory::full_ways},
                                            {all, line, 1}}) {
     const bool everything = cache.size == all;
-    trials.push_back({fmt::format("{} bytes", cache.size), with(cache), [=](const MachineResult& result) {
+    trials.push_back({fmt::format("{} bytes in {} ways", cache.size, cache.ways), with(cache), [=](const MachineResult& result) {
                         const processors::cost::ReferenceCounts counts = result.references();
                         return steps(result) &&
                                (!comparable || (counts.references() == least.references() &&
