@@ -1,5 +1,6 @@
 #include "processors/replay/host_bytes.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "memory/cache.h"
@@ -31,7 +32,20 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
 
 }  // namespace
 
-std::uint64_t host_bytes(const machine::MachineConfig& config) {
+machine::MachineConfig without_idle_contexts(const machine::MachineConfig& config, std::uint32_t width,
+                                             std::uint32_t height) {
+  machine::MachineConfig used = config;
+  // Where the tree is built, nodes ask when they have built their part, one before another.
+  if (config.contexts > 1 && config.build.sharing == machine::Sharing::given) {
+    const std::uint64_t packets = machine::packets_of_image(width, height, config.packets);
+    const std::uint64_t each = (packets + config.all_nodes() - 1) / config.all_nodes();
+    used.contexts = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(each, 1, config.contexts));
+  }
+  return used;
+}
+
+std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t width, std::uint32_t height) {
+  const machine::MachineConfig config = without_idle_contexts(machine, width, height);
   // A node's counts, while it runs and in the result, and its cursor, event and place in the posting order.
   constexpr std::uint64_t bytes_a_node =
       2 * sizeof(cost::NodeStatistics) + sizeof(walk::Cursor) + sim::EventQueue::bytes_an_event + 8;
@@ -60,9 +74,9 @@ std::uint64_t host_bytes(const machine::MachineConfig& config) {
   }
   constexpr std::uint64_t bytes_a_context = sizeof(walk::Cursor) + 64 + sim::EventQueue::bytes_an_event;
   constexpr std::uint64_t bytes_a_port = 80;
-  const std::uint64_t contexts =
-      config.ports_of_node() == 1 ? 0
-                                  : config.contexts * bytes_a_context + config.ports_of_node() * bytes_a_port;
+  const std::uint64_t contexts = machine.ports_of_node() == 1 ? 0  // nodes without what several contexts need
+                                                              : config.contexts * bytes_a_context +
+                                                                    config.ports_of_node() * bytes_a_port;
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
   const std::uint64_t events =
       sim::EventQueue::bytes_of_days(std::size_t{config.all_nodes()} * config.ports_of_node());
@@ -71,7 +85,7 @@ std::uint64_t host_bytes(const machine::MachineConfig& config) {
 }
 
 std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config) {
-  std::uint64_t bytes = host_bytes(config);
+  std::uint64_t bytes = host_bytes(config, log.width, log.height);
   if (config.packets.order != machine::PacketOrder::scanline) {
     bytes += sizeof(std::uint32_t) * machine::packets_of_image(log.width, log.height, config.packets);
   }

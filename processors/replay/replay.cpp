@@ -8,6 +8,7 @@
 #include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/energy_counts.h"
+#include "processors/replay/host_bytes.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/record_laws.h"
 #include "processors/replay/replay_parts.h"
@@ -99,8 +100,8 @@ cost::TimeSums MachineResult::time() const {
 
 namespace {
 
-MachineResult replay_image(const program::WorkLog& log, const machine::MachineConfig& config,
-                           const ReplayOptions& options) {
+MachineResult replay_contexts(const program::WorkLog& log, const machine::MachineConfig& config,
+                              const ReplayOptions& options) {
   std::optional<walk::TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = walk::layout_of(log, config, plan);
   const machine::PacketList all_packets(log.width, log.height, config.packets);
@@ -159,6 +160,30 @@ MachineResult replay_image(const program::WorkLog& log, const machine::MachineCo
   result.packet_figures = nodes->packet_figures();
   check_conservation(log, config, result);
   check_bounds(config, result);
+  return result;
+}
+
+// A machine of many nodes with many contexts each has more of them than there are packets. Replays step by
+// step keep them all, so that comparisons with these hold what is said of the others.
+MachineResult replay_image(const program::WorkLog& log, const machine::MachineConfig& config,
+                           const ReplayOptions& options) {
+  const machine::MachineConfig used = without_idle_contexts(config, log.width, log.height);
+  if (used.contexts == config.contexts || options.step_by_step) {
+    return replay_contexts(log, config, options);
+  }
+  ReplayOptions with_contexts = options;
+  with_contexts.with_contexts = true;
+  MachineResult result = replay_contexts(log, used, with_contexts);
+  const std::int64_t idle = config.contexts - used.contexts;
+  if (config.host.assignment == machine::Assignment::dynamic) {
+    result.host.requests += idle * config.all_nodes();
+  }
+  if (config.interconnect.kind == memory::InterconnectKind::ideal &&
+      config.placement != machine::Placement::distributed) {
+    for (ClusterResult& cluster : result.clusters) {
+      cluster.interconnect.links += idle * config.nodes;  // one for each context
+    }
+  }
   return result;
 }
 

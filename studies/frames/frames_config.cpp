@@ -25,8 +25,9 @@ void refuse_many_images(const sim::Config& config, const keys::FrameConfig& fram
 
 /// All ways are simulated at the same time.
 void refuse_large_machines(const sim::Config& config, const FramesConfig& frames) {
-  const std::string excess =
-      frames.frame.memory.excess(frame_ways * processors::replay::host_bytes(frames.machine));
+  const std::string excess = frames.frame.memory.excess(
+      frame_ways *
+      processors::replay::host_bytes(frames.machine, frames.frame.render.width, frames.frame.render.height));
   if (!excess.empty()) {
     config.fail("machine.nodes", "simulating " + std::to_string(frame_ways) +
                                      " machines of these nodes and their caches takes" + excess);

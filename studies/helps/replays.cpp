@@ -49,7 +49,7 @@ std::uint64_t bytes_of(const SharedLog& shared, const MachineConfig& machine) {
   try {
     return processors::replay::host_bytes(shared.log, timed);
   } catch (const sim::UserError&) {
-    return processors::replay::host_bytes(timed);
+    return processors::replay::host_bytes(timed, shared.log.width, shared.log.height);
   }
 }
 

@@ -24,7 +24,8 @@ namespace marti::studies::run {
 
 void refuse_beyond_memory(const sim::Config& config, const keys::FrameConfig& frame,
                           const processors::machine::MachineConfig& machine) {
-  if (const std::string excess = frame.memory.excess(processors::replay::host_bytes(machine));
+  if (const std::string excess = frame.memory.excess(
+          processors::replay::host_bytes(machine, frame.render.width, frame.render.height));
       !excess.empty()) {
     config.fail("machine.nodes", "simulating these nodes and their caches takes" + excess);
   }

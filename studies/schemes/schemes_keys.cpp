@@ -149,9 +149,10 @@ SchemesConfig read_schemes(sim::Config& config) {
     }
     const std::uint32_t most = std::max(schemes.nodes.back(), fewest_nodes(machine.config));
     const std::string excess = schemes.frame.memory.excess(processors::replay::host_bytes(
-        named_by(config, "schemes.nodes", [&] {
-          return read_machine_file(file, schemes.frame, most, machine.config.pipeline);
-        }).config));
+        named_by(config, "schemes.nodes",
+                 [&] { return read_machine_file(file, schemes.frame, most, machine.config.pipeline); })
+            .config,
+        schemes.frame.render.width, schemes.frame.render.height));
     if (!excess.empty()) {
       config.fail("schemes.nodes", "simulating that many nodes of " + sim::shown(name) + " takes" + excess);
     }

@@ -34,9 +34,14 @@ namespace marti::studies::sweep {
 
 namespace {
 
+std::uint64_t bytes_of(const SweepPlan& plan, const SweepMachine& machine) {
+  const auto& image = plan.frames[machine.frame].config.render;
+  return processors::replay::host_bytes(machine.config, image.width, image.height);
+}
+
 void refuse_large_machines(const SweepPlan& plan, const sim::MemoryBudget& memory) {
   for (const SweepMachine& machine : plan.machines) {
-    memory.require(processors::replay::host_bytes(machine.config),
+    memory.require(bytes_of(plan, machine),
                    "a machine of " + std::to_string(machine.config.all_nodes()) + " nodes takes",
                    "lower machine.nodes or cache.size");
   }
@@ -62,7 +67,7 @@ SweepOutlook outlook_of(const SweepPlan& plan, const WorkDone& done, unsigned th
   std::vector<std::uint64_t> bytes;
   for (std::size_t machine = 0; machine < plan.machines.size(); ++machine) {
     if (!done.machines[machine]) {
-      bytes.push_back(processors::replay::host_bytes(plan.machines[machine].config));
+      bytes.push_back(bytes_of(plan, plan.machines[machine]));
     }
   }
   const auto largest =

@@ -204,7 +204,7 @@ TEST(Replay, SixtyFiveThousandNodesMayHoldADatabaseTogether) {
     machine.placement = Placement::distributed;
     machine.network.kind = kind;
     EXPECT_GT(replay::replay(log, machine).end, 0);
-    EXPECT_LT(host_bytes(machine), std::uint64_t{1} << 30U);
+    EXPECT_LT(host_bytes(machine, log.width, log.height), std::uint64_t{1} << 30U);
   }
 }
 

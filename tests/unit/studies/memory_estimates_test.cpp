@@ -41,6 +41,12 @@ TEST(MemoryEstimates, OfMachinesAreNotTooLow) {
        [](MachineConfig& m) {
          m.cache.organisation = CacheOrganisation::none;
          m.contexts = 4;
+         m.nodes /= 4;
+       }},
+      {"contexts without a packet",
+       [](MachineConfig& m) {
+         m.cache.organisation = CacheOrganisation::none;
+         m.contexts = 256;
        }},
       {"replicated",
        [](MachineConfig& m) {
