@@ -1,13 +1,13 @@
 # cmake -DDIRECTORY=dir -DROOM=room -DFUNCTION=name -DHEADER=file.h -DOUTPUT=file.cpp -P embed_charts.cmake: the chart
-# specifications of a directory as the C++ source of FUNCTION, which HEADER declares in the namespace of ROOM.
+# and table specifications of a directory as the C++ source of FUNCTION, which HEADER declares in the namespace of ROOM.
 cmake_minimum_required(VERSION 3.25)
 
-file(GLOB charts "${DIRECTORY}/*.vl.json")
+file(GLOB charts "${DIRECTORY}/*.json")
 list(SORT charts)
 set(entries "")
 foreach(chart IN LISTS charts)
   get_filename_component(file "${chart}" NAME)
-  string(REPLACE ".vl.json" "" name "${file}")
+  string(REGEX REPLACE "[.].*" "" name "${file}")
   file(READ "${chart}" text)
   if(text MATCHES "[)]chart\"")
     message(FATAL_ERROR "${chart}: cannot be put between R\"chart( and )chart\"")

@@ -9,9 +9,6 @@
 
 namespace marti::processors::walk {
 
-namespace {
-
-// Number of nodes that have a record in a tree that is given.
 std::uint64_t node_records(const program::WorkLog& log) {
   const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
   if (!accel::walks_bvh(log.traversal)) {
@@ -20,8 +17,6 @@ std::uint64_t node_records(const program::WorkLog& log) {
   return static_cast<std::uint64_t>(
       std::count_if(nodes.begin(), nodes.end(), [](const accel::TopologyNode& node) { return !node.leaf; }));
 }
-
-}  // namespace
 
 std::optional<TreePlan> tree_plan_of(const program::WorkLog& log, const machine::MachineConfig& config,
                                      std::vector<BranchStart> starts) {

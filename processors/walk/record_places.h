@@ -12,6 +12,10 @@
 
 namespace marti::processors::walk {
 
+/// Number of nodes that have a record in a tree that is given: of a bvh its branches, whose records hold the
+/// boxes and places of their children.
+[[nodiscard]] std::uint64_t node_records(const program::WorkLog& log);
+
 /// The plan by which the tree is built, from the `starts` of its branches or, without any, from those that
 /// the configuration gives (build_start.h); std::nullopt when the tree is given.
 [[nodiscard]] std::optional<TreePlan> tree_plan_of(const program::WorkLog& log,

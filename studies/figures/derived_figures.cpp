@@ -161,6 +161,7 @@ void add_energy(std::vector<FigureEntry>& all) {
   add("power", "W", "mean power: energy by frame time", Better::lower,
       total / (own("end") * Formula(1000.0)));
   add("rays_a_joule", "1", "rays of all kinds for a joule", Better::higher, rays / (total / Formula(1e15)));
+  add("energy_a_ray", "nJ", "energy by rays of all kinds", Better::lower, total / Formula(1e6) / rays);
   add("energy_delay", "uJ s", "energy times frame time", Better::lower,
       total / Formula(1e9) * (own("end") / Formula(1e12)));
   add("area", "mm2", "area of nodes and caches", Better::lower, own("energy_area") / Formula(1e6));

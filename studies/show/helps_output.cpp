@@ -46,7 +46,8 @@ Json change_json(const helps::WhatHelps& what, const std::optional<helps::Measur
                      {"to", keys::setting_value(key.key, key.to)}};
     set.push_back(key.key + "=" + keys::plain_setting(key.to));
   }
-  return {{"keys", keys},
+  return {{"text", helps::describe(change->keys)},
+          {"keys", keys},
           {"set", set},
           {"outcome", name_of(change->outcome)},
           {"frame_time_ps", change->end ? Json(*change->end) : Json(nullptr)},

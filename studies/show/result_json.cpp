@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "processors/walk/record_places.h"
 #include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/run/frame_figures.h"
@@ -56,6 +57,8 @@ Json structure_json(const run::RunResult& r) {
           {"traversal", accel::traversal_names[static_cast<std::size_t>(r.functional.frame.log->traversal)]},
           {"mailboxes", r.functional.frame.log->mailboxes},
           {"notes", r.functional.structure_notes},
+          {"node_records", processors::walk::node_records(*r.functional.frame.log)},
+          {"node_bytes", r.machine.layout.node_bytes},
           {"levels", levels}};
 }
 

@@ -41,7 +41,7 @@ bool may_be_changed(const std::filesystem::path& place) {
 SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
     : name_(file.string()), writes_(access != Access::read) {
   int flags = SQLite::OPEN_NOMUTEX | SQLite::OPEN_READWRITE;
-  std::string place = name_;
+  std::string place = access == Access::memory ? ":memory:" : name_;
   if (writes_) {
     flags |= SQLite::OPEN_CREATE;
   } else if (!may_be_changed(place_of(file))) {

@@ -24,6 +24,7 @@ class SqliteConnection {
   enum class Access : std::uint8_t {
     write,        ///< the file is made if it is missing
     write_alone,  ///< written without any lock: nobody else knows the file's name
+    memory,       ///< no file but a new database in memory; messages name `file`, where its content is from
     /// The file must exist; others may write it. A journal or log that a killed writer has left beside it is
     /// applied first, if the file and its directory may be written. If they may not, a journal or log that
     /// cannot be read is a UserError that says what to do, and a file without one is read without any lock.

@@ -241,6 +241,22 @@ describe("the charts", () => {
       }
     }));
 
+  it("show any figure along any axis", () =>
+    withOwnPage(async (page) => {
+      const figures = await page.$$eval("#figure option", (options) => options.map(({ value }) => value));
+      assert.ok(figures.length > 50, "all figures that tell machines apart");
+      await page.selectOption("#figure", "node_misses");
+      await page.selectOption("#along", { label: "machine.nodes" });
+      await drawn(page);
+      assert.equal(await page.textContent("#title-figure"), "Node misses over machine.nodes");
+      const rows = await rowsOf(page, "figure");
+      assert.ok(rows.length > 1);
+      const columns = await page.evaluate(() => window.marti.charts.data.explorer);
+      for (const { ordinal, amount } of rows) {
+        assert.equal(amount, columns.columns.node_misses[columns.ordinal.indexOf(ordinal)]);
+      }
+    }));
+
   it("say the figures of what is pointed at", () =>
     withPage(async (page) => {
       for (const name of await chartNames(page)) {

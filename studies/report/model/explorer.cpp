@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "memory/record_kind.h"
 #include "sim/mapped.h"
 #include "sim/rounded.h"
+#include "studies/figures/counted_figures.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/report/model/cycle_groups.h"
@@ -23,6 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ps_a_ms = 1e9;
 constexpr double ps_a_us = 1e6;
+constexpr double fj_a_mj = 1e12;
 
 /// A figure of every point that the page has.
 struct ExplorerField {
@@ -35,7 +38,26 @@ struct ExplorerField {
   std::string title{};  // for people; empty: the name in words
 };
 
-// The fields that at least one point has.
+// How a figure of the catalogue is shown that has no entry of its own.
+ExplorerField field_of(const std::string& name) {
+  const std::string& unit = figures::figure_named(name).unit;
+  if (unit == "ps") {
+    return {name, "ms", ps_a_ms};
+  }
+  return unit == "fJ" ? ExplorerField{name, "mJ", fj_a_mj}
+                      : ExplorerField{name, unit == "fraction" || unit == "text" ? "1" : unit};
+}
+
+// Whether the points' values of a figure are not all equal.
+bool varies(const ReportPoints& sweep, const std::string& name) {
+  const ReportPoint& first = sweep.points.front();
+  return std::ranges::any_of(sweep.points, [&](const ReportPoint& point) {
+    return point.has(name) != first.has(name) || point.figure(name) != first.figure(name);
+  });
+}
+
+// The fields that at least one point has: those that charts and the table need, then all figures of the
+// points that tell machines apart.
 std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   std::vector<ExplorerField> fields = {{"end", "ms", ps_a_ms, true, true, "frame time"},
                                        {"speed_up", "1", 1.0, true, true, "speed-up"},
@@ -65,6 +87,17 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
     return std::ranges::none_of(sweep.points,
                                 [&](const ReportPoint& point) { return point.has(field.name); });
   });
+  std::set<std::string, std::less<>> known = {"cost"};  // shown as the price
+  for (const ExplorerField& field : fields) {
+    known.insert(field.name);
+  }
+  for (const auto& entries : {figures::derived_figures(), figures::counted_figures()}) {
+    for (const figures::FigureEntry& figure : entries) {
+      if (!known.contains(figure.name) && figure.of_machine() && varies(sweep, figure.name)) {
+        fields.push_back(field_of(figure.name));
+      }
+    }
+  }
   return fields;
 }
 

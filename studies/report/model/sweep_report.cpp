@@ -6,10 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sim/mapped.h"
 #include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
-#include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/explorer.h"
 #include "studies/report/model/report_points.h"
 #include "studies/report/model/sweep_answer.h"
@@ -20,51 +18,6 @@ namespace marti::studies::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Figures over an axis.
-struct SliceChart {
-  std::string_view name;  // of chart and specification
-  std::string_view title;
-  std::string_view note;
-  std::vector<std::string> fields;
-  std::string what{};  // of the waits: whose
-};
-
-constexpr std::string_view percentiles_note =
-    "Means are exact; a percentile is the upper end of its bucket of the histogram, at most an eighth too "
-    "long.";
-
-std::vector<std::string> waits_of(const std::string& what) {
-  return {"mean_" + what + "_wait", what + "_wait_p50", what + "_wait_p95", what + "_wait_p99"};
-}
-
-std::vector<SliceChart> charts_over_axis() {
-  const std::vector<std::string> parts = sim::mapped(
-      cycle_group_names, [&](const std::string_view group) { return "part_" + std::string(group); });
-  return {{"efficiency",
-           "Efficiency",
-           "Speed-up, divided by how many times the base's nodes a machine has; 100 % is the dashed line.",
-           {"efficiency"}},
-          {"cycles", "Where the cycles go",
-           "All nodes' time from 0 to the end of the frame; it adds up to 100 %.", parts},
-          {"utilisation",
-           "How busy the shared parts are",
-           "What comes near 100 % limits the machine.",
-           {"interconnect_utilisation", "bank_utilisation", "network_utilisation"}},
-          {"waits", "How long nodes wait for the interconnect", percentiles_note, waits_of("interconnect"),
-           "interconnect"},
-          {"waits", "How long nodes wait for banks", percentiles_note, waits_of("bank"), "bank"}};
-}
-
-// Axes along which hit ratios are worth a chart of their own.
-bool bears_on_caches(const std::string& name) {
-  for (const std::string_view prefix : {"cache.", "l2.", "structure.", "packets.", "layout."}) {
-    if (name.starts_with(prefix)) {
-      return true;
-    }
-  }
-  return false;
-}
 
 // A figure that no machine of the sweep has gets no place in the legend.
 void keep_folded(Json& spec, const Json& names) {
@@ -103,59 +56,83 @@ void drop_ideal(Json& spec) {
   spec["layer"].erase(ideal);
 }
 
-// Exact points over an axis, joined by lines if it is one of numbers.
-void add_explored(const std::string& name, const std::string& title, const ReportAxis& axis, ChartWords words,
-                  ReportData& report) {
-  ReportChart chart = live_chart("over_axis", name, fmt::format("{} over {}", title, axis.name),
-                                 {{"rows", "explorer"}, {"title", title}}, words);
-  chart.note =
-      "Points and bars are machines of the sweep, simulated exactly; lines only join them. The bound follows "
-      "from each point's own counters.";
-  report.charts.push_back(std::move(chart));
+bool has_field(const ReportData& report, const std::string& field) {
+  return report.explorer["columns"].contains(field);
 }
 
-// Over an axis, or without one over that which the reader chooses, at first `first`. Without any of its
-// fields there is no chart.
-void add_slice(const ReportPoints& sweep, const SliceChart& slice, std::optional<std::size_t> axis,
-               std::size_t first, const std::string& name, ReportData& report) {
-  const std::string& along = sweep.axes[axis.value_or(first)].name;
+// Fields of the figures that at least one machine has.
+Json fields_of(const Json& live, const ReportData& report) {
   Json fields = Json::array();
-  for (const std::string& field : slice.fields) {
-    if (report.explorer["columns"].contains(field)) {
+  for (const Json& field : live.value("fields", Json::array())) {
+    if (has_field(report, field)) {
       fields.push_back(field);
     }
   }
-  if (fields.empty()) {
-    return;
-  }
-  Json live = {{"rows", "slice"}, {"fields", fields}};
-  if (axis) {
-    live["axis"] = *axis;
-  } else {
-    live["title"] = slice.title;
-  }
-  ReportChart chart = live_chart(slice.name, name, fmt::format("{} over {}", slice.title, along), live,
-                                 {{"WHAT", slice.what}});
-  chart.note = slice.note;
-  keep_folded(chart.spec, fields);
-  report.charts.push_back(std::move(chart));
+  return fields;
 }
 
-// Every machine by a figure and its frame time.
-void add_front(const ReportPoints& sweep, const std::string& figure, const std::string& title,
-               std::string_view axis, ReportData& report) {
-  ReportChart chart = live_chart("front", figure, "Frame time and " + title,
-                                 {{"rows", "all"}, {"by", figure}}, {{"FIGURE", figure}, {"TITLE", axis}});
-  chart.note =
-      "Every machine of the sweep; the line joins those that no other beats in both. Named are the "
-      "fastest, the knee, the best within the budget where one is given, and the chosen one.";
-  const bool has_free = std::ranges::any_of(sweep.points, [&figure](const ReportPoint& point) {
-    return point.has(figure) && point.figure(figure) <= 0.0;
-  });
-  if (has_free) {
+// A chart that follows the reader (sweep.axes[*along]: at first), or with `axis` runs along this one always.
+void add_live(const DescribedChart& described, const ReportPoints& sweep, std::optional<std::size_t> along,
+              std::optional<std::size_t> axis, ReportData& report) {
+  const Json& meta = described.meta;
+  Json live = meta.at("live");
+  const std::string rows = live.at("rows");
+  const std::string price = sweep.priced ? "price" : "number of nodes";
+  std::string title = replaced(meta.at("title"), {{"PRICE", price}});
+  if (rows == "all") {
+    if (sweep.points.size() < 2 || !has_field(report, live.at("by"))) {
+      return;
+    }
+  } else {
+    if (rows == "slice") {
+      live["fields"] = fields_of(live, report);
+    }
+    if (!along || (rows == "slice" && live["fields"].empty())) {
+      return;
+    }
+    live[axis ? "axis" : "title"] = axis ? Json(*axis) : Json(title);
+    title += " over " + sweep.axes[axis.value_or(*along)].name;
+  }
+  ChartWords words;
+  const Json given = meta.value("words", Json::object());
+  for (const auto& [word, other] : given.items()) {
+    words.emplace_back(word, replaced(other, {{"PRICE", price}}));
+  }
+  const std::string name = meta.value("name", std::string(described.file)) +
+                           (axis ? "_" + plain_name(sweep.axes[*axis].name) : "");
+  ReportChart chart = live_chart(described.file, name, title, live, words);
+  chart.note = meta.at("note");
+  if (rows == "slice") {
+    keep_folded(chart.spec, live["fields"]);
+  }
+  if (!meta.value("ideal", true)) {
+    drop_ideal(chart.spec);
+  }
+  // A logarithm has no place for a machine that is free.
+  if (rows == "all" && std::ranges::any_of(sweep.points, [&](const ReportPoint& point) {
+        const std::string by = live.at("by");
+        return point.has(by) && point.figure(by) <= 0.0;
+      })) {
     chart.spec["encoding"]["x"]["scale"] = {{"type", "linear"}, {"nice", false}};
   }
   report.charts.push_back(std::move(chart));
+}
+
+void add_live_charts(const ReportPoints& sweep, std::optional<std::size_t> along, ReportData& report) {
+  for (const DescribedChart& described : described_charts("sweep")) {
+    const Json prefixes = described.meta.value("along", Json());
+    if (!prefixes.is_array()) {
+      add_live(described, sweep, along, std::nullopt, report);
+      continue;
+    }
+    for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
+      if (std::ranges::any_of(prefixes, [&](const Json& prefix) {
+            return sweep.axes[axis].name.starts_with(prefix.get<std::string>());
+          })) {
+        add_live(described, sweep, along, axis, report);
+      }
+    }
+  }
 }
 
 tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
@@ -225,38 +202,7 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   report.about = about_sweep(sweep);
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, chosen, axis);
-  if (axis) {
-    add_explored("frame_time", "Frame time", sweep.axes[*axis],
-                 {{"FIGURE", "ms"}, {"TITLE", "frame time, ms"}}, report);
-    drop_ideal(report.charts.back().spec);
-    add_explored("speed_up", "Speed-up", sweep.axes[*axis], {{"FIGURE", "speed_up"}, {"TITLE", "speed-up"}},
-                 report);
-  }
-  if (sweep.points.size() > 1) {
-    add_front(sweep, "price", sweep.priced ? "price" : "number of nodes", sweep.priced ? "price" : "nodes",
-              report);
-    if (!chosen.energy_front.empty()) {
-      add_front(sweep, "energy", "energy", "energy of a frame, mJ", report);
-    }
-  }
-  if (axis) {
-    for (const SliceChart& slice : charts_over_axis()) {
-      add_slice(sweep, slice, std::nullopt, *axis,
-                slice.what.empty() ? std::string(slice.name) : slice.what + "_" + std::string(slice.name),
-                report);
-    }
-  }
-  const SliceChart hit_ratios = {
-      "hit_ratio",
-      "Hit ratio",
-      "Of all references of the first level, and by kind of record; those of the other kinds are in the "
-      "figures of a chosen point.",
-      {"hit_ratio", "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive"}};
-  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
-    if (bears_on_caches(sweep.axes[i].name)) {
-      add_slice(sweep, hit_ratios, i, i, "hit_ratio_" + plain_name(sweep.axes[i].name), report);
-    }
-  }
+  add_live_charts(sweep, axis, report);
   constexpr std::size_t few = 12;
   report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});
   for (const auto& [key, value] : sweep.settings) {

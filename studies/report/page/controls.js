@@ -1,10 +1,11 @@
-// The explorer's controls: a slider or a list for each axis, the axis that charts run along, what colours show, and the budget.
+// The explorer's controls: a slider or a list for each axis, the axis that charts run along, what colours show, the
+// figure of one chart, and the budget.
 "use strict";
 
 /** A price that a machine may have; null for a text that is none. */
 marti.budgetOf = (text) => (text && Number(text) >= 0 && Number.isFinite(Number(text)) ? Number(text) : null);
 
-marti.controls = (explorer, { moved, turned, coloured, budgeted }) => {
+marti.controls = (explorer, { moved, turned, coloured, figured, budgeted }) => {
   const { axes } = explorer;
   const place = document.getElementById("controls");
 
@@ -35,6 +36,9 @@ marti.controls = (explorer, { moved, turned, coloured, budgeted }) => {
   const colour = labelled(document.createElement("select"), "colour", "Colours show ");
   colour.append(new Option("nothing", ""), ...names());
   colour.addEventListener("change", () => coloured(colour.value === "" ? null : Number(colour.value)));
+  const figure = labelled(document.createElement("select"), "figure", "Chart of ");
+  figure.append(...explorer.fields.map(({ name, title }) => new Option(title, name)));
+  figure.addEventListener("change", () => figured(figure.value));
   const budget = labelled(document.createElement("input"), "budget", `Budget (${explorer.price}) `);
   Object.assign(budget, { type: "number", min: 0, step: "any" });
   budget.addEventListener("input", () => budgeted(marti.budgetOf(budget.value)));
@@ -51,6 +55,7 @@ marti.controls = (explorer, { moved, turned, coloured, budgeted }) => {
     });
     along.value = state.axis;
     colour.value = state.colour ?? "";
+    figure.value = state.figure;
     if (Number(budget.value) !== state.budget) budget.value = state.budget ?? "";
   }
 

@@ -38,6 +38,7 @@ marti.explorer = (() => {
   function shape({ axis, rows }) {
     if (rows === "all") return String(state.colour);
     if (rows === "slice") return String(axis ?? state.axis);
+    if (rows === "figure") return `${state.axis},${state.figure}`;
     const coloured = state.colour !== null && state.colour !== state.axis;
     return [state.axis, ...(coloured ? [state.colour, ...marti.rows.around(explorer, state.colour, state.place)] : [])].join();
   }
@@ -128,6 +129,11 @@ marti.explorer = (() => {
     request();
   }
 
+  function figured(figure) {
+    state.figure = figure;
+    request();
+  }
+
   function budgeted(price) {
     state.budget = price;
     request();
@@ -140,6 +146,7 @@ marti.explorer = (() => {
     if (state.axis === null) return named;
     if (state.axis !== first.axis) named.along = axes[state.axis].name;
     if (state.colour !== first.colour) named.colour = state.colour === null ? "none" : axes[state.colour].name;
+    if (state.figure !== first.figure) named.figure = state.figure;
     if (state.budget !== first.budget) named.budget = state.budget ?? "none";
     if (point !== undefined) {
       if (point !== explorer.start) named.point = explorer.ordinal[point];
@@ -157,6 +164,7 @@ marti.explorer = (() => {
     if (state.axis === null) return;
     state.axis = axisNamed(named.along, first.axis);
     state.colour = named.colour === "none" ? null : axisNamed(named.colour, first.colour);
+    state.figure = explorer.columns[named.figure] ? named.figure : first.figure;
     state.budget = named.budget === "none" ? null : marti.budgetOf(named.budget) ?? first.budget;
     state.place = axes.map((axis, a) => {
       const at = axis.texts.indexOf(named[`axis.${axis.name}`]);
@@ -167,7 +175,7 @@ marti.explorer = (() => {
 
   const table = marti.table(explorer, { choose, changed: request });
   const showPoint = marti.chosenPoint(explorer);
-  const controls = state.axis === null ? null : marti.controls(explorer, { moved, turned, coloured, budgeted });
+  const controls = state.axis === null ? null : marti.controls(explorer, { moved, turned, coloured, figured, budgeted });
   take(marti.address.read() ?? {});
   if (state.axis !== null) read();
   fill();

@@ -1,6 +1,6 @@
 // Rows of the charts that follow the explorer, from the columns of a sweep (docs/report.md). A page has
 // them for the machine that its reader has chosen, a plot for the one that the page begins with. A view says what is
-// chosen: {axis, place, colour, chosen, lets, budget}, of which a plot has the first three. No element of the page is touched
+// chosen: {axis, place, colour, figure, chosen, lets, budget}, of which a plot has the first four. No element of the page is touched
 // here.
 "use strict";
 
@@ -88,6 +88,15 @@ marti.rows = (() => {
     });
   }
 
+  /** The field of the figure that the reader has chosen. */
+  const fieldOf = ({ fields }, { figure }) => fields.find(({ name }) => name === figure);
+
+  /** Exact points along the axis: its texts and the chosen figure. */
+  function figure(explorer, view) {
+    const { name, title } = fieldOf(explorer, view);
+    return slice(explorer, { fields: [name] }, view).map(({ [name]: amount, ...row }) => ({ ...row, figure: title, amount }));
+  }
+
   /** Every point that has the figure `live.by`, by that and time; `lets` are those that the table's filter lets through. */
   function all(explorer, live, { colour, lets }) {
     const front = new Set(explorer.fronts[live.by]);
@@ -132,15 +141,17 @@ marti.rows = (() => {
   }
 
   /** What a page begins with and a plot shows: the machines around the knee. */
-  const firstView = ({ axis, axes, place, start, colour, budget }) => {
-    return { axis, place: axes.map((_, a) => place[a][start]), colour: colour ?? null, budget: budget ?? null };
+  const firstView = ({ axis, axes, place, start, colour, columns, budget }) => {
+    const figure = ["energy_a_ray", "hit_ratio", "end"].find((name) => columns[name]);
+    return { axis, place: axes.map((_, a) => place[a][start]), colour: colour ?? null, figure, budget: budget ?? null };
   };
 
   /** Rows of the chart with this `live`, for a view. */
   function of(explorer, live, view) {
     if (live.rows === "explorer") return explore(explorer, view);
+    if (live.rows === "figure") return figure(explorer, view);
     return live.rows === "slice" ? slice(explorer, live, view) : all(explorer, live, view);
   }
 
-  return { line, around, machine, roles, marks, firstView, of };
+  return { line, around, machine, roles, marks, fieldOf, firstView, of };
 })();

@@ -90,11 +90,19 @@ marti.specs = (() => {
     return { ...spec, layer };
   }
 
+  /** The figure of the reader's choice, with its name and unit beside its axis. */
+  function chosen({ encoding, ...spec }, { title, unit, percent }) {
+    const shown = percent ? "%" : unit;
+    const y = { ...encoding.y, title: !shown || shown === "1" ? title : `${title}, ${shown}` };
+    return { ...spec, encoding: { ...encoding, y: percent ? { ...y, axis: { format: ".3~%" } } : y } };
+  }
+
   /** The declared specification `spec` of the chart with this `live`, for a view (explorer_rows.js). */
   function of(explorer, spec, live, view) {
     const shown = live.rows === "explorer" && view.colour === view.axis ? null : view.colour;
     const coloured = shown === null ? null : explorer.axes[shown];
     if (live.rows === "slice") return sliced(spec, explorer.axes[live.axis ?? view.axis]);
+    if (live.rows === "figure") return sliced(chosen(spec, marti.rows.fieldOf(explorer, view)), explorer.axes[view.axis]);
     if (live.rows === "all") return offered(spec, coloured && colours(coloured, coloured.texts));
     const axis = explorer.axes[view.axis];
     const texts = coloured && marti.rows.around(explorer, shown, view.place).map((i) => coloured.texts[i]);
@@ -103,8 +111,11 @@ marti.specs = (() => {
   }
 
   /** The title says which axis the chart runs along, where the reader chooses it. */
-  const titled = (explorer, live, view, title) =>
-    live.title && live.axis === undefined ? `${live.title} over ${explorer.axes[view.axis].name}` : title;
+  function titled(explorer, live, view, title) {
+    if (!live.title || live.axis !== undefined) return title;
+    const field = live.rows === "figure" && marti.rows.fieldOf(explorer, view).title;
+    return `${field ? field[0].toUpperCase() + field.slice(1) : live.title} over ${explorer.axes[view.axis].name}`;
+  }
 
   /** The machine of a chart along an axis: the values on the others; of a chart of all points the sweep. */
   function aboutOf(explorer, live, view, about) {

@@ -9,6 +9,7 @@
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
+#include "studies/report/model/chart_library.h"
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/point_bounds.h"
 #include "studies/report/model/sweep_answer.h"
@@ -23,6 +24,9 @@ namespace {
 
 // What a browser can be given as one page, and a person as one chart.
 constexpr std::size_t most_points = 20'000;
+// Up to so many points come with all figures, so that a reader can look at any; of more only those that the
+// page's own charts and tables need.
+constexpr std::size_t most_points_with_all = 2'000;
 
 constexpr std::string_view counters[] = {"end",
                                          "cost",
@@ -58,6 +62,10 @@ constexpr std::string_view counters[] = {"end",
 constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
 
 std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
+  std::vector<std::string> names = reader.figures();
+  if (reader.points().size() <= most_points_with_all) {
+    return names;
+  }
   std::set<std::string, std::less<>> wanted(std::begin(counters), std::end(counters));
   for (const std::string_view activity : processors::cost::activity_names) {
     wanted.insert("time_" + std::string(activity));
@@ -66,8 +74,12 @@ std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
   for (const std::string_view kind : memory::record_kind_names) {
     wanted.insert("hit_ratio_" + std::string(kind));
   }
-  // Figures that a store of another version lacks are left out.
-  std::vector<std::string> names = reader.figures();
+  for (const DescribedChart& chart : described_charts("sweep")) {
+    for (const nlohmann::ordered_json& field :
+         chart.meta.at("live").value("fields", nlohmann::ordered_json::array())) {
+      wanted.insert(field.get<std::string>());
+    }
+  }
   std::erase_if(names, [&](const std::string& name) { return !wanted.contains(name); });
   return names;
 }

@@ -8,9 +8,7 @@
 #include "sim/sha256.h"
 #include "studies/keys/setting_value.h"
 #include "studies/report/model/chart_library.h"
-#include "studies/report/model/helps_table.h"
 #include "studies/report/model/run_answer.h"
-#include "studies/report/model/run_charts.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
 #include "studies/sweep/store/point_result.h"
@@ -33,38 +31,6 @@ void add_configuration(const tables::RunJson& run, ReportData& report) {
   }
   report.configuration =
       "# given in the file or by --set\n" + report.configuration + "\n# defaults\n" + defaults;
-}
-
-tables::Table plan_table(const tables::RunJson& run) {
-  tables::Table table("plan", "The plan: what the run left out",
-                      {tables::text_column("item", "what could be left out"),
-                       tables::text_column("decision", "left out, needed, kept or not applicable"),
-                       tables::text_column("class", "proved before the frame, or decided ray by ray"),
-                       tables::text_column("fact", "what the decision rests on"),
-                       tables::count_column("saved_operations", "counted after the frame"),
-                       tables::text_column("unit", "of saved_operations")});
-  for (const auto& [name, item] : run.at("plan").items()) {
-    const tables::RunJson each = run.of(item);
-    const bool saved = each.find("counted.operations").is_number_integer();
-    table.add_row({name, each.text("decision"), each.text("class"), each.text("fact"),
-                   saved ? tables::Cell(whole(each, "counted.operations")) : tables::Cell(),
-                   each.text("unit")});
-  }
-  return table;
-}
-
-tables::Table figures_table(const tables::RunJson& run) {
-  tables::Table table("figures", "Figures of the run",
-                      {tables::text_column("figure", "name in the catalogue (`marti figures`)"),
-                       tables::text_column("value", "times in ps")});
-  for (const char* part : {"figures.frame", "figures.machine"}) {
-    for (const auto& [name, value] : run.at(part).items()) {
-      if (value.is_number() || value.is_string()) {
-        table.add_row({name, value.is_string() ? value.get<std::string>() : value.dump()});
-      }
-    }
-  }
-  return table;
 }
 
 // Whether the run has written what now stands under that name; otherwise the page says why it is left out.
@@ -165,7 +131,7 @@ ReportData machine_report(const tables::RunJson& run, const std::string& base) {
   report.kind = "run";
   report.about = about_machine(run);
   report.answer = answer_of(run, base);
-  add_run_charts(run, report);
+  add_queried(run, report);
   add_configuration(run, report);
   report.provenance = {{"version of marti", run.text("marti.version")},
                        {"configuration", run.text("config.file")},
@@ -188,11 +154,6 @@ ReportData read_run_report(const fs::path& directory) {
 ReportData report_of_run(const tables::RunJson& run) {
   ReportData report = machine_report(run, "one node");
   report.title = fmt::format("Run of {} on {}", run.text("figures.frame.scene"), machine_text(run));
-  if (tables::Table helps = helps_table(run); !helps.rows().empty()) {
-    report.tables.push_back({std::move(helps), false});
-  }
-  report.tables.push_back({plan_table(run), true});
-  report.tables.push_back({figures_table(run), true});
   report.provenance.emplace_back("scene", run.text("scene.source"));
   return report;
 }
@@ -202,7 +163,6 @@ ReportData read_point_report(const tables::PointName& point) {
   ReportData report = machine_report(run, "its base machine");
   report.title = fmt::format("Point {} of a sweep: {} on {}", point.ordinal, run.text("figures.frame.scene"),
                              machine_text(run));
-  report.tables.push_back({figures_table(run), true});
   return report;
 }
 
