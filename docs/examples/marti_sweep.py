@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the store of a sweep (docs/sweep-store.md): its axes, figures and points, the best within a budget, a plot.
+"""Reads the store of a sweep (docs/sweep.md): its axes, figures and points, the best within a budget, a plot.
 
 In a notebook, with this one file beside it:
 

@@ -21,7 +21,7 @@ sim::Ticks least_time(const processors::machine::MachineConfig& machine,
 
 namespace {
 
-// Found by timing (docs/benchmarks.md); docs/internals/model.md has the table.
+// Found by timing (docs/internals/benchmarks.md); docs/internals/model.md has the table.
 constexpr Work traced_step = 8;
 constexpr Work walked_reference = 4;
 constexpr Work stripped_reference = 10;

@@ -1,5 +1,6 @@
-// The parts of a run's result, each as a field of `machine` in result.json, which docs/result-schema.md
-// describes, and as lines of the summary. A part that this run has not is null in JSON and has no lines.
+// The parts of a run's result, each as a field of `machine` in result.json, which
+// docs/internals/result-json.md describes, and as lines of the summary. A part that this run has not is null
+// in JSON and has no lines.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
 // Numbers as people read them: every text for people takes them from here, so that a time, a size or a share
-// looks alike wherever it stands (docs/commands.md, "How numbers are written").
+// looks alike wherever it stands (docs/results.md, "Numbers in texts for people").
 #pragma once
 
 #include <cstdint>

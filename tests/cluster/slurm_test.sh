@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep-cluster.md, as an array of two jobs, and srun with two
+# slurm_test.sh PROGRAM SOURCE: runs the job script of docs/sweep.md, as an array of two jobs, and srun with two
 # tasks under a Slurm of one node that is started for it; compares with a sweep of one process. Ends everything that it
 # has started.
 set -euo pipefail
@@ -78,8 +78,8 @@ done
 
 # The document's script; options of sbatch on the command line stand before those of the script. Without its memory:
 # a slurmd without control groups cannot start steps of jobs that ask for some.
-sed -n '/^#!\/bin\/bash$/,/^```$/p' "$source/docs/sweep-cluster.md" | sed '/^```$/d; /^#SBATCH --mem/d' >"$work/job.sh"
-[ -s "$work/job.sh" ] || fail "docs/sweep-cluster.md has no job script"
+sed -n '/^#!\/bin\/bash$/,/^```$/p' "$source/docs/sweep.md" | sed '/^```$/d; /^#SBATCH --mem/d' >"$work/job.sh"
+[ -s "$work/job.sh" ] || fail "docs/sweep.md has no job script"
 mkdir "$work/bin" && ln -s "$program" "$work/bin/marti"
 cp -r "$source/configs" "$work/configs"
 cp "$source/configs/sweep-small.toml" "$work/configs/sweep.toml"

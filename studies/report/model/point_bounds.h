@@ -1,5 +1,5 @@
 // Bounds of a point's frame that follow from its counters: how short it can be at best, and from how many
-// nodes on its busiest queue is full. docs/report.md has the equations.
+// nodes on its busiest queue is full. docs/internals/pages.md has the equations.
 #pragma once
 
 #include <optional>

@@ -44,8 +44,8 @@ struct ReportData {
   std::string configuration;                                    ///< text as in a TOML file; may be empty
   std::string text;                                             ///< the study's own report; may be empty
   std::vector<std::pair<std::string, std::string>> provenance;  ///< what, value
-  /// Points and model of a sweep, of which the charts that follow the explorer are made, as docs/report.md
-  /// describes them; null without.
+  /// Points and model of a sweep, of which the charts that follow the explorer are made, as
+  /// docs/internals/pages.md describes them; null without.
   nlohmann::ordered_json explorer;
 };
 

@@ -1,4 +1,4 @@
-// Rows of the charts that follow the explorer, from the columns of a sweep (docs/report.md). A page has
+// Rows of the charts that follow the explorer, from the columns of a sweep (docs/internals/pages.md). A page has
 // them for the machine that its reader has chosen, a plot for the one that the page begins with. A view says what is
 // chosen: {axis, place, colour, figure, chosen, lets, budget}, of which a plot has the first four. No element of the page is touched
 // here.

@@ -1,4 +1,4 @@
-// The tables of a sweep's store, as docs/sweep-store.md describes them.
+// The tables of a sweep's store, as docs/sweep.md and docs/internals/store.md describe them.
 #pragma once
 
 #include <filesystem>
