@@ -20,11 +20,10 @@ constexpr std::size_t most_in_pairs = 4;
 // So many replays are begun together, on any number of cores. Which steps come next depends on them.
 constexpr std::size_t begun_together = 4;
 
-// With a budget for fewer replays than this only steps are replayed, chosen by what limits the machine.
-constexpr Work few_replays = 3;
-
-// With a larger budget, one part in so many is kept for resources at their best.
-constexpr Work part_for_best = 4;
+// What the steps of a part have saved, by what was expected of them, tells of its other steps; within these
+// bounds, because one bad guess must not rule out a part.
+constexpr double least_trust = 0.25;
+constexpr double most_trust = 4.0;
 
 double saved_of(sim::Ticks before, sim::Ticks after) {
   return 1.0 - static_cast<double>(after) / static_cast<double>(before);
@@ -44,27 +43,25 @@ class Measurement {
         prices_(prices),
         machine_(machine),
         result_(result),
-        counts_(counts),
         shared_(shared),
         limited_(budget != unlimited_work),
         budget_(budget) {
     what_.end = result.end;
     const Work one = replay_work(result_, stripped_for(shared_, machine_));
-    few_ = limited_ && budget_ / few_replays < one;
-    in_turns_ = limited_ && (few_ || stripped_for(shared_, machine_) == nullptr);
     what_.measured = !limited_ || budget_ >= one;
     for (Resource& resource : resources_of(changer, machine, facts_of(result))) {
       Case& made = cases_.emplace_back();
       made.help = {resource.name, resource.part, unmeasured(resource.step, resource),
                    unmeasured(resource.best, resource)};
+      made.expected = expected_saving(made.help, resource.factor, machine, result, counts);
       made.resource = std::move(resource);
     }
   }
 
   WhatHelps made() {
     if (!what_.measured) {
-      for (const Replay& one : in_order()) {
-        one.into->outcome = Outcome::work;
+      for (Case* const one : unreplayed_cases()) {
+        change_of(*one).outcome = Outcome::work;
       }
       take_helps();
       return std::move(what_);
@@ -86,14 +83,27 @@ class Measurement {
   struct Case {
     Resource resource;
     Help help;
+    double expected = 0.0;  // share of the frame that the step may save, by a first guess
   };
   struct Replay {
     const processors::machine::MachineConfig* machine;
     MeasuredChange* into;
-    double share = 0.0;            // how busy the resource is
-    std::pair<Part, bool> part{};  // whether it is one of packets
-    std::size_t turn = 0;          // so many resources of its part come before it
   };
+  // What the steps of a part were expected to save, and what those that were replayed have saved.
+  struct Trust {
+    double expected = 0.0;
+    double saved = 0.0;
+  };
+
+  // The step, or where there is none the resource at its best.
+  static MeasuredChange& change_of(Case& one) { return one.help.step ? *one.help.step : *one.help.best; }
+  static const Change& machine_of(const Case& one) {
+    return one.resource.step ? *one.resource.step : *one.resource.best;
+  }
+  // Packets, which count as a part of the nodes, are one of their own.
+  static std::pair<Part, bool> part_of(const Case& one) {
+    return {one.help.part, one.help.name.starts_with("packets.")};
+  }
 
   // What is known of a change without a replay.
   [[nodiscard]] std::optional<MeasuredChange> unmeasured(const std::optional<Change>& change,
@@ -116,15 +126,15 @@ class Measurement {
     return measured;
   }
 
-  // Whether there is room for a replay of so many bytes, and work left beyond `kept` for one that is like the
-  // machine's own.
-  bool can_begin(const Replay& replay, std::uint64_t bytes, Work kept, Work& begun) {
+  // Whether there is room for a replay of so many bytes, and work left for one that is like the machine's
+  // own.
+  bool can_begin(const Replay& replay, std::uint64_t bytes, Work& begun) {
     if (bytes > shared_.memory.left()) {
       replay.into->outcome = Outcome::memory;
       return false;
     }
     const Work work = replay_work(result_, stripped_for(shared_, *replay.machine));
-    if (limited_ && work + begun + kept > budget_) {
+    if (limited_ && work + begun > budget_) {
       replay.into->outcome = Outcome::work;
       return false;
     }
@@ -132,14 +142,14 @@ class Measurement {
     return true;
   }
 
-  void replay(const std::vector<Replay>& wanted, Work kept = 0) {
+  void replay(const std::vector<Replay>& wanted) {
     Work begun = 0;
     std::uint64_t most_bytes = 0;
     std::vector<const processors::machine::MachineConfig*> machines;
     std::vector<MeasuredChange*> changes;
     for (const Replay& one : wanted) {
       const std::uint64_t bytes = bytes_of(shared_, *one.machine);
-      if (can_begin(one, bytes, kept, begun)) {
+      if (can_begin(one, bytes, begun)) {
         most_bytes = std::max(most_bytes, bytes);
         machines.push_back(one.machine);
         changes.push_back(one.into);
@@ -161,35 +171,50 @@ class Measurement {
     }
   }
 
-  // The steps, and the resources that have none at their best, in the order in which they are replayed: those
-  // first that can save most, by the nodes' own work; of equals those that are busiest. Where only few can be
-  // replayed, as of all machines without a stripped log, those first that are busiest, and each part of the
-  // machine has its turn: what is busiest need not be what helps, as where nodes of a pipeline are busy with
-  // waiting for a bus. Packets, which count as a part of the nodes, have turns of their own.
-  std::vector<Replay> in_order() {
-    std::vector<Replay> wanted;
+  std::vector<Case*> unreplayed_cases() {
+    std::vector<Case*> found;
     for (Case& one : cases_) {
-      const std::optional<Change>& change = one.resource.step ? one.resource.step : one.resource.best;
-      MeasuredChange& into = one.help.step ? *one.help.step : *one.help.best;
-      if (into.outcome != Outcome::measured) {
-        const double share =
-            in_turns_ ? busy_share(one.help, machine_, result_, counts_) : share_of(one.help.part, counts_);
-        wanted.push_back(
-            {&change->machine, &into, share, {one.help.part, one.help.name.starts_with("packets.")}});
+      if (change_of(one).outcome != Outcome::measured) {
+        found.push_back(&one);
       }
     }
-    std::ranges::stable_sort(wanted, [&](const Replay& a, const Replay& b) {
-      return in_turns_ ? std::pair(a.share, a.into->most_saved) > std::pair(b.share, b.into->most_saved)
-                       : std::pair(a.into->most_saved, a.share) > std::pair(b.into->most_saved, b.share);
-    });
-    if (in_turns_) {
-      std::map<std::pair<Part, bool>, std::size_t> turns;
-      for (Replay& one : wanted) {
-        one.turn = turns[one.part]++;
+    return found;
+  }
+
+  // The cases that are replayed next, those first that are expected to save most. While parts of the machine
+  // have not had their turn, one of each comes before all others: what is busiest need not be what helps, as
+  // where nodes of a pipeline are busy with waiting for a bus.
+  std::vector<Case*> next_of(std::vector<Case*>& left) {
+    std::map<std::pair<Part, bool>, Trust> trust;
+    for (const Case& one : cases_) {
+      if (one.help.step && one.help.step->saved && !one.resource.same_frame) {
+        Trust& part = trust[part_of(one)];
+        part.expected += one.expected;
+        part.saved += std::max(0.0, *one.help.step->saved);
       }
-      std::ranges::stable_sort(wanted, {}, &Replay::turn);
     }
-    return wanted;
+    const auto expected = [&](const Case* one) {
+      const auto part = trust.find(part_of(*one));
+      const bool told = part != trust.end() && part->second.expected > 0.0;
+      return std::min(
+          one->help.step ? one->help.step->most_saved : 1.0,
+          one->expected *
+              (told ? std::clamp(part->second.saved / part->second.expected, least_trust, most_trust) : 1.0));
+    };
+    std::ranges::stable_sort(left, std::greater<>(), expected);
+    std::vector<Case*> turn;
+    std::vector<Case*> later;
+    for (Case* const one : left) {
+      const bool waits = trust.contains(part_of(*one)) || std::ranges::any_of(turn, [&](const Case* other) {
+                           return part_of(*other) == part_of(*one);
+                         });
+      (waits || expected(one) < worth_naming ? later : turn).push_back(one);
+    }
+    turn.insert(turn.end(), later.begin(), later.end());
+    left = turn;
+    turn.resize(std::min(turn.size(), begun_together));
+    left.erase(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(turn.size()));
+    return turn;
   }
 
   // What a step must be able to save to be worth a replay. With prices any that is worth naming may be the
@@ -209,19 +234,17 @@ class Measurement {
   }
 
   void measure_steps() {
-    const std::vector<Replay> wanted = in_order();
-    const Work kept = limited_ && !few_ ? budget_ / part_for_best : 0;
-    tell(wanted.size());
-    for (std::size_t next = 0; next < wanted.size();) {
+    std::vector<Case*> left = unreplayed_cases();
+    tell(left.size());
+    while (!left.empty()) {
       const double least = least_wanted();
+      std::erase_if(left,
+                    [&](Case* one) { return change_of(*one).most_saved < least; });  // it stays needless
       std::vector<Replay> together;
-      while (next < wanted.size() && together.size() < begun_together) {
-        const Replay& one = wanted[next++];
-        if (one.into->most_saved >= least) {  // else it stays needless
-          together.push_back(one);
-        }
+      for (Case* const one : next_of(left)) {
+        together.push_back({&machine_of(*one).machine, &change_of(*one)});
       }
-      replay(together, kept);
+      replay(together);
     }
   }
 
@@ -307,12 +330,9 @@ class Measurement {
   const std::optional<keys::Prices>& prices_;
   const processors::machine::MachineConfig& machine_;
   const processors::replay::MachineResult& result_;
-  const figures::Counts& counts_;
   const SharedLog& shared_;
   bool limited_;
-  bool few_ = false;       // the budget has room for few replays
-  bool in_turns_ = false;  // as in_order() says
-  Work budget_;            // what is left of it
+  Work budget_;  // what is left of it
   std::vector<Case> cases_;
   WhatHelps what_;
 };

@@ -14,8 +14,13 @@ namespace {
 using processors::machine::CacheOrganisation;
 using processors::machine::SecondLevel;
 
-// Ways between those of a cache and the next that divide its lines are tried up to this many.
-constexpr std::uint32_t most_ways_tried = 64;
+// More ways than this cost more than they bring (Hill and Smith 1989).
+constexpr std::int64_t most_ways = 64;
+// Guesses of Resource::factor: twice the size of a cache leaves about six tenths of its misses where it is small.
+constexpr double twice_the_size = 1.7;
+constexpr double more_of_the_ways = 1.1;
+constexpr double another_line = 1.2;
+constexpr double another_choice = 1.25;
 
 // The first of these values with which a machine can be built.
 std::optional<Change> first_possible(const Changer& changer, std::string_view key,
@@ -31,23 +36,28 @@ std::optional<Change> first_possible(const Changer& changer, std::string_view ke
 Resource larger(const Changer& changer, Part part, std::string_view key, const memory::CacheConfig& cache,
                 std::uint64_t database_bytes) {
   const memory::CacheShape shape = memory::shape_of(cache);
-  const bool one_set = cache.ways == memory::full_ways;
-  const auto units = static_cast<std::int64_t>(one_set ? shape.ways : shape.sets);
-  const std::int64_t unit = std::int64_t{cache.line} * (one_set ? 1 : shape.ways);
+  const std::int64_t unit = std::int64_t{cache.line} * (cache.ways == memory::full_ways ? 1 : shape.ways);
   const auto now = static_cast<std::int64_t>(cache.size);
   const auto all = static_cast<std::int64_t>(std::bit_ceil(std::max(database_bytes, cache.size)));
-  return {std::string(key), part, first_possible(changer, key, {unit * tenth_more(units), 2 * now}),
-          first_possible(changer, key, {all, all / unit * unit + unit})};
+  return {std::string(key), part, first_possible(changer, key, {next_power(now), 2 * now}),
+          all > 2 * now ? first_possible(changer, key, {all, all / unit * unit + unit}) : std::nullopt,
+          twice_the_size};
 }
 
 Resource more_ways(const Changer& changer, Part part, std::string_view key,
                    const memory::CacheConfig& cache) {
+  Resource more = {std::string(key), part, std::nullopt, std::nullopt, more_of_the_ways};
   std::vector<std::int64_t> tried;
-  for (std::uint32_t ways = cache.ways + 1; ways <= cache.ways + most_ways_tried; ++ways) {
+  for (std::int64_t ways = next_power(cache.ways); ways <= most_ways; ways *= 2) {
     tried.push_back(ways);
   }
-  return {std::string(key), part, first_possible(changer, key, tried),
-          changer.with({{key, std::int64_t{memory::full_ways}}})};
+  more.step = first_possible(changer, key, tried);
+  std::ranges::reverse(tried);
+  more.best = first_possible(changer, key, tried);
+  if (more.step && more.best && more.step->keys.front().to == more.best->keys.front().to) {
+    more.best.reset();
+  }
+  return more;
 }
 
 void add_first_level(const Changer& changer, const processors::machine::NodeCacheConfig& cache,
@@ -60,10 +70,11 @@ void add_first_level(const Changer& changer, const processors::machine::NodeCach
   }
   resources.push_back(fewer(changer, Part::caches, "cache.hit_cycles"));
   const std::int64_t line = cache.cache.line;
-  resources.push_back({"cache.line", Part::caches, changer.with({{"cache.line", 2 * line}}), std::nullopt});
+  resources.push_back(
+      {"cache.line", Part::caches, changer.with({{"cache.line", 2 * line}}), std::nullopt, another_line});
   if (line > 1) {
-    resources.push_back(
-        {"cache.line (shorter)", Part::caches, changer.with({{"cache.line", line / 2}}), std::nullopt});
+    resources.push_back({"cache.line (shorter)", Part::caches, changer.with({{"cache.line", line / 2}}),
+                         std::nullopt, another_line});
   }
 }
 
@@ -96,22 +107,23 @@ std::int64_t less(std::int64_t now) { return std::max<std::int64_t>(std::min(now
 }  // namespace
 
 void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vector<Resource>& resources) {
-  const auto add = [&](std::string_view key, const std::optional<Change>& step,
-                       const std::optional<Change>& best = std::nullopt) {
-    resources.push_back({std::string(key), Part::banks, step, best});
+  const auto add = [&](std::string_view key, const std::optional<Change>& step, double factor) {
+    resources.push_back({std::string(key), Part::banks, step, std::nullopt, factor});
   };
-  const auto set = [&](std::string_view key, std::int64_t to, std::int64_t from) {
-    return changer.with({{key, to, from}});
+  const auto shorter = [&](std::string_view key, std::int64_t now, std::int64_t least) {
+    const std::int64_t next = std::max(less(now), least);
+    add(key, changer.with({{key, next, now}}),
+        static_cast<double>(now) / static_cast<double>(std::max<std::int64_t>(next, 1)));
   };
-  add("dram.tck", set("dram.tck", std::max<std::int64_t>(less(dram.period), 1), dram.period),
-      set("dram.tck", 1, dram.period));
-  add("dram.channels", set("dram.channels", std::int64_t{dram.channels} * 2, dram.channels));
+  shorter("dram.tck", dram.period, 1);
+  add("dram.channels",
+      changer.with({{"dram.channels", next_power(dram.channels), std::int64_t{dram.channels}}}), 2.0);
   const DramTiming& times = dram.timing;
-  add("dram.tcl", set("dram.tcl", less(times.cl), times.cl));
-  add("dram.trcd", set("dram.trcd", less(times.rcd), times.rcd));
-  add("dram.trp", set("dram.trp", less(times.rp), times.rp));
+  shorter("dram.tcl", times.cl, 0);
+  shorter("dram.trcd", times.rcd, 0);
+  shorter("dram.trp", times.rp, 0);
   const auto choose = [&](std::string_view key, std::string_view other) {
-    add(key, changer.with({{key, std::string(other)}}));
+    add(key, changer.with({{key, std::string(other)}}), another_choice);
   };
   choose("dram.page", memory::dram_page_names[dram.page == DramPage::open ? 1 : 0]);
   if (dram.policy == DramPolicy::fcfs) {
@@ -135,13 +147,14 @@ void add_stages(const Changer& changer, const MachineConfig& machine, std::vecto
                  {"pipeline.shade", &PipelineConfig::shade}}};
   for (const auto& [grown, member] : stages) {
     const std::int64_t before = machine.pipeline.*member;
-    const std::int64_t added = tenth_more(before) - before;
+    const std::int64_t added = next_power(before) - before;
     std::vector<NewValue> values = {{"machine.nodes", machine.nodes + added}};
     for (const auto& [key, count] : stages) {
       const std::int64_t now = machine.pipeline.*count;
       values.push_back({key, key == grown ? now + added : now, now});
     }
-    resources.push_back({std::string(grown), Part::nodes, changer.with(values), std::nullopt});
+    resources.push_back({std::string(grown), Part::nodes, changer.with(values), std::nullopt,
+                         static_cast<double>(before + added) / static_cast<double>(before)});
   }
 }
 
@@ -153,8 +166,8 @@ void add_queues(const Changer& changer, const MachineConfig& machine, std::vecto
   if ((pipeline ? machine.pipeline.in_flight : machine.space.in_flight) > 0) {
     Resource rays = more(changer, Part::queues, section + "in_flight");
     if (pipeline) {
-      rays.best = changer.with(
-          {{"pipeline.in_flight", std::int64_t{processors::machine::most_in_flight(machine.pipeline)}}});
+      rays = more(changer, Part::queues, "pipeline.in_flight",
+                  processors::machine::most_in_flight(machine.pipeline));
     }
     resources.push_back(std::move(rays));
   }
@@ -168,7 +181,9 @@ void add_flow(const Changer& changer, const MachineConfig& machine, std::vector<
     resources.push_back(faster_clock(changer, Part::network, "network.clock"));
     resources.push_back(fewer(changer, Part::network, "network.hop_cycles"));
     if (machine.network.kind != memory::NetworkKind::ideal) {
-      resources.push_back(wider(changer, Part::network, "network.width"));
+      const std::int64_t message = image ? machine.distribution.header_bytes + machine.reference_bytes()
+                                         : std::int64_t{machine.messages.ray_bytes};
+      resources.push_back(more(changer, Part::network, "network.width", next_power(message - 1)));
     }
   }
   if (image) {
@@ -184,7 +199,7 @@ void add_flow(const Changer& changer, const MachineConfig& machine, std::vector<
   } else {
     resources.push_back({"space.level", Part::regions,
                          changer.with({{"space.level", std::int64_t{machine.space.level} + 1}}), std::nullopt,
-                         false});
+                         another_choice, false});
   }
 }
 

@@ -17,14 +17,13 @@ std::int64_t whole(const Changer& changer, std::string_view key) {
   return std::get<std::int64_t>(changer.now(key));
 }
 
-Resource made(const Changer& changer, Part part, std::string_view key, const sim::Value& step,
-              const sim::Value& best) {
-  return {std::string(key), part, changer.with({{key, step}}), changer.with({{key, best}})};
-}
+double ratio(std::int64_t a, std::int64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 
 }  // namespace
 
-std::int64_t tenth_more(std::int64_t count) { return count + (count + 9) / 10; }
+std::int64_t next_power(std::int64_t number) {
+  return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(number) + 1));
+}
 
 Resource faster_clock(const Changer& changer, Part part, std::string_view key) {
   const auto now = std::get<double>(changer.now(key));
@@ -34,33 +33,33 @@ Resource faster_clock(const Changer& changer, Part part, std::string_view key) {
   if (sim::Clock::from_hertz(faster).period() == period && period > 1) {
     faster = std::round(static_cast<double>(sim::ticks_per_second) / static_cast<double>(period - 1));
   }
-  Resource clock = made(changer, part, key, faster, fastest);
-  if (period == 1) {
-    clock.step.reset();
-    clock.best.reset();
+  Resource clock = {std::string(key), part, std::nullopt, std::nullopt};
+  if (period > 1) {
+    clock.step = changer.with({{key, faster}});
+    clock.factor = faster / now;
   }
   return clock;
 }
 
-Resource wider(const Changer& changer, Part part, std::string_view key) {
-  const auto next = std::bit_ceil(static_cast<std::uint64_t>(whole(changer, key)) + 1);
-  return made(changer, part, key, static_cast<std::int64_t>(next), *changer.key(key).maximum);
-}
-
-Resource more(const Changer& changer, Part part, std::string_view key) {
-  return more(changer, part, key, std::get<std::int64_t>(*changer.key(key).maximum));
-}
-
-Resource more(const Changer& changer, Part part, std::string_view key, std::int64_t best) {
+Resource more(const Changer& changer, Part part, std::string_view key, std::optional<std::int64_t> useful) {
   const std::int64_t now = whole(changer, key);
-  return made(changer, part, key, tenth_more(now), std::max(now, best));
+  const auto most = std::get<std::int64_t>(*changer.key(key).maximum);
+  constexpr std::int64_t far = 8;
+  const std::int64_t end = useful ? next_power(*useful) / 2 : now <= most / far ? now * far : most;
+  const std::int64_t best = std::min(end, most);
+  const std::int64_t next = std::min(next_power(now), std::max(best, now));
+  return {std::string(key), part, changer.with({{key, next}}),
+          best > next ? changer.with({{key, best}}) : std::nullopt,
+          ratio(next, std::max<std::int64_t>(now, 1))};
 }
 
 Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least) {
   const std::int64_t now = whole(changer, key);
   // Of large numbers the quotient comes first, so that the product does not overflow.
   const std::int64_t less = now > 1'000'000 ? now / 11 * 10 : now * 10 / 11;
-  return made(changer, part, key, std::clamp(std::min(now - 1, less), std::min(least, now), now), least);
+  const std::int64_t next = std::clamp(std::min(now - 1, less), std::min(least, now), now);
+  return {std::string(key), part, changer.with({{key, next}}),
+          next > least ? changer.with({{key, least}}) : std::nullopt, next > 0 ? ratio(now, next) : 2.0};
 }
 
 namespace {
@@ -71,12 +70,18 @@ using processors::machine::Scheme;
 using processors::machine::Sharing;
 using processors::replay::MachineResult;
 
+// Packets of half the size leave about half of the time in which nodes have none left.
+constexpr double packets_factor = 2.0;
+
+// A line in one beat: what is wider moves no line faster.
+std::int64_t line_of(const MachineConfig& machine) { return next_power(machine.reference_bytes() - 1); }
+
 void add_nodes(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
                std::vector<Resource>& resources) {
   resources.push_back(faster_clock(changer, Part::nodes, "node.clock"));
   const bool image = machine.scheme == Scheme::image;
   // More nodes than packets have nothing to do. Nodes beside which rays move are of use without such a limit.
-  const auto packets = static_cast<std::int64_t>(facts.packets / machine.clusters + 1);
+  const auto packets = static_cast<std::int64_t>(facts.packets / machine.clusters);
   Resource nodes = more(changer, Part::nodes, "machine.nodes",
                         std::min<std::int64_t>(packets, processors::machine::most_nodes / machine.clusters));
   if (!image) {
@@ -92,7 +97,8 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   if (image) {
     for (const std::string_view side : {"packets.width", "packets.height"}) {
       const std::int64_t half = std::get<std::int64_t>(changer.now(side)) / 2;
-      resources.push_back({std::string(side), Part::nodes, changer.with({{side, half}}), std::nullopt});
+      resources.push_back(
+          {std::string(side), Part::nodes, changer.with({{side, half}}), std::nullopt, packets_factor});
     }
   }
   if (machine.contexts > 1) {
@@ -109,18 +115,17 @@ void add_local_memory(const Changer& changer, const MachineConfig& machine,
   if (machine.scheme == Scheme::space || machine.placement != Placement::shared ||
       machine.build.sharing == Sharing::private_trees) {
     resources.push_back(faster_clock(changer, Part::local_memory, "local.clock"));
-    resources.push_back(wider(changer, Part::local_memory, "local.width"));
+    resources.push_back(more(changer, Part::local_memory, "local.width", line_of(machine)));
     resources.push_back(fewer(changer, Part::local_memory, "local.access_cycles"));
   }
 }
 
 // More banks than this have nothing to serve: as many as there are interleave units of the database and the
-// frame buffer, but no more than the key may have.
-std::int64_t most_banks(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts) {
+// frame buffer.
+std::int64_t useful_banks(const MachineConfig& machine, const FrameFacts& facts) {
   const std::uint64_t pixel = machine.layout.pixel_bytes + machine.layout.record_alignment - 1;
   const std::uint64_t bytes = facts.database_bytes + facts.pixels * pixel;
-  const auto most = std::get<std::int64_t>(*changer.key("memory.banks").maximum);
-  return std::min(most, static_cast<std::int64_t>(bytes / machine.banks.interleave + 1));
+  return static_cast<std::int64_t>(bytes / machine.banks.interleave + 1);
 }
 
 void add_shared_memory(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
@@ -129,7 +134,7 @@ void add_shared_memory(const Changer& changer, const MachineConfig& machine, con
     return;
   }
   if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
-    resources.push_back(wider(changer, Part::interconnect, "interconnect.width"));
+    resources.push_back(more(changer, Part::interconnect, "interconnect.width", line_of(machine)));
   }
   resources.push_back(faster_clock(changer, Part::interconnect, "interconnect.clock"));
   if (machine.interconnect.kind == memory::InterconnectKind::bus) {
@@ -144,14 +149,8 @@ void add_shared_memory(const Changer& changer, const MachineConfig& machine, con
     add_dram(changer, *machine.banks.dram, resources);
     return;
   }
-  resources.push_back(more(changer, Part::banks, "memory.banks", most_banks(changer, machine, facts)));
+  resources.push_back(more(changer, Part::banks, "memory.banks", useful_banks(machine, facts)));
   resources.push_back(faster_clock(changer, Part::banks, "memory.clock"));
-  // Where only some steps can be replayed, the first of a part is: a bank more of these few is a larger step
-  // than a clock a tenth faster.
-  constexpr std::uint32_t few_banks = 4;
-  if (machine.banks.count > few_banks) {
-    std::swap(resources.back(), *(resources.end() - 2));
-  }
   resources.push_back(fewer(changer, Part::banks, "memory.access_cycles"));
   resources.push_back(fewer(changer, Part::banks, "memory.busy_cycles"));
   // How long a bank is busy changes nothing where no access has waited for its bank.

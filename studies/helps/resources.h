@@ -31,37 +31,37 @@ enum class Part : std::uint8_t {
 struct Resource {
   std::string name;  ///< the key that is changed, as results for programs name the resource
   Part part = Part::nodes;
-  /// The resource a tenth better, or, where its key does not allow that value, better by the next larger
-  /// amount that it allows. Empty where its key allows nothing better.
+  /// The next better machine that one would build: a clock or a delay a tenth shorter, of numbers and sizes
+  /// the next power of two, or the most that the key allows. Empty where its key allows nothing better.
   std::optional<Change> step;
-  /// As good as it can be: it costs no time, or there is as much of it as can be used. Empty where that is
-  /// not defined.
+  /// The end of the useful range: a delay costs no time, or there is as much as can be used. Empty where
+  /// there is no such end, or the step leads there already.
   std::optional<Change> best;
+  /// How many times as good the step makes the resource; of what has no measure, as the sizes of caches, a
+  /// guess.
+  double factor = 2.0;
   /// Whether every step of a ray still takes the same number of cycles of a node.
   bool same_work = true;
   /// Nothing in the frame has ever waited for this resource, so improving it cannot change the frame time.
   bool same_frame = false;
 };
 
-/// A tenth more, rounded up.
-[[nodiscard]] std::int64_t tenth_more(std::int64_t count);
+/// The least power of two above `number`, which must be at least 0.
+[[nodiscard]] std::int64_t next_power(std::int64_t number);
 
-/// A clock: a tenth faster, or at periods of a few ticks the next shorter one; at best 1 THz, a cycle of one
-/// tick.
+/// A clock: a tenth faster, or at periods of a few ticks the next shorter one.
 [[nodiscard]] Resource faster_clock(const Changer& changer, Part part, std::string_view key);
-/// A width in bytes: the next power of two; at best the most that the key may have.
-[[nodiscard]] Resource wider(const Changer& changer, Part part, std::string_view key);
-/// A number of things: a tenth more; at best `best`, or the most that the key may have.
-[[nodiscard]] Resource more(const Changer& changer, Part part, std::string_view key);
-[[nodiscard]] Resource more(const Changer& changer, Part part, std::string_view key, std::int64_t best);
+/// A number of things or bytes: the next power of two; at best the greatest power of two up to `useful`,
+/// beyond which nothing is gained, and without it eight times as many.
+[[nodiscard]] Resource more(const Changer& changer, Part part, std::string_view key,
+                            std::optional<std::int64_t> useful = std::nullopt);
 /// A number of cycles or bytes that is to be small: divided by 1.1, by at least one
 /// less; at best `least`.
 [[nodiscard]] Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least = 0);
 
-/// Those of the machine's first- and second-level caches. `database_bytes`: of one copy of the database. A
-/// size grows by a tenth of the sets (or doubles where that cannot be built); at its best it is the next
-/// power of two from the database on, so that each line has a place of its own in a cache for all records.
-/// Ways become the next number that divides the lines; at their best all lines are one set.
+/// Those of the machine's first- and second-level caches. `database_bytes`: of one copy of the database. At
+/// its best a size is the next power of two from the database on, so that each line has a place of its own in
+/// a cache for all records, and ways are 64 or as many below as can be built.
 void add_caches(const Changer& changer, const processors::machine::MachineConfig& machine,
                 std::uint64_t database_bytes, std::vector<Resource>& resources);
 

@@ -73,6 +73,14 @@ std::string nothing(const WhatHelps& what) {
   return text;
 }
 
+// Where not all steps could be tried, a better one may be among the others.
+std::string tried(const WhatHelps& what) {
+  const Unreplayed left = unreplayed(what);
+  const std::size_t steps = what.helps.size();
+  const std::size_t untried = left.work + left.memory;
+  return untried == 0 ? std::string() : fmt::format("; {} of {} steps tried", steps - untried, steps);
+}
+
 }  // namespace
 
 std::pair<int, double> worth(double saved, double price) {
@@ -148,15 +156,16 @@ std::string verdict(const WhatHelps& what, const processors::machine::MachineCon
   }
   const std::vector<const Help*> helps = best_helps(what);
   if (!helps.empty()) {
-    return fmt::format("{}{}; {}", gain_text(*helps[0]), ties(helps),
-                       why(*helps[0], machine, result, counts));
+    return fmt::format("{}{}; {}{}", gain_text(*helps[0]), ties(helps),
+                       why(*helps[0], machine, result, counts), tried(what));
   }
   if (what.pair) {
-    return fmt::format("{} and {} bind together: {}: frame {} shorter, but by neither alone {}",
-                       what.pair->first, what.pair->second, describe(what.pair->step.keys),
-                       percent(*what.pair->step.saved), percent(worth_naming));
+    return fmt::format(
+        "{}: frame {} shorter; of {} and {} each alone saves less than {}, because the other stays full{}",
+        describe(what.pair->step.keys), percent(*what.pair->step.saved), what.pair->first, what.pair->second,
+        percent(worth_naming), tried(what));
   }
-  return nothing(what);
+  return nothing(what) + tried(what);
 }
 
 }  // namespace marti::studies::helps

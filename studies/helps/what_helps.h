@@ -24,7 +24,7 @@ inline constexpr double tie = 0.001;
 /// How much is measured.
 enum class Measuring : std::uint8_t {
   none,
-  within_budget,  ///< about as much work as the run itself takes
+  within_budget,  ///< as much work as the run itself takes, or two seconds if that is more
   all
 };
 

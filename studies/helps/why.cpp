@@ -163,6 +163,36 @@ double busy_share(const Help& help, const MachineConfig& machine, const MachineR
   }
 }
 
+double expected_saving(const Help& help, double factor, const MachineConfig& machine,
+                       const MachineResult& result, const figures::Counts& counts) {
+  const double gone = 1.0 - 1.0 / factor;
+  if (machine.scheme != processors::machine::Scheme::image && help.part == Part::nodes) {
+    // More nodes, and faster ones, help the slowest stage or node, and all others too.
+    const figures::FlowFigures flow = figures::flow_figures(machine, result);
+    return help.name.starts_with("pipeline.") ? busy_share(help, machine, result, counts) * gone
+                                              : std::max(flow.slowest().busiest, flow.all.busiest) * gone;
+  }
+  const double full = std::max({figure(counts, "interconnect_utilisation"),
+                                figure(counts, "bank_utilisation"), figure(counts, "network_utilisation")});
+  if (help.part != Part::nodes || help.name.starts_with("packets.")) {
+    double takes = busy_share(help, machine, result, counts);
+    if (help.part == Part::caches || help.part == Part::second_level) {
+      takes = std::max(takes, full);  // what hits does not queue
+    }
+    if (help.part == Part::network) {
+      takes = std::max(takes, share_of(help.part, counts));  // nodes also wait for rays that are under way
+    }
+    return takes * gone;
+  }
+  // Faster nodes, and more of them, ask the way to memory for as much as before.
+  const double room = 1.0 - full;
+  const double idle = share(counts, {Activity::idle});
+  const double takes = help.name == "machine.nodes"             ? 1.0 - idle
+                       : help.name.starts_with("node.contexts") ? 1.0 - idle - computing(counts)
+                                                                : computing(counts);
+  return std::min(takes * gone, room);
+}
+
 std::string why(const Help& help, const MachineConfig& machine, const MachineResult& result,
                 const figures::Counts& counts) {
   switch (help.part) {

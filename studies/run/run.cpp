@@ -226,12 +226,12 @@ std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::Reco
 helps::WhatHelps measure_help(const sim::Config& config, const RunOptions& run,
                               std::shared_ptr<const processors::walk::StrippedLog> stripped,
                               const RunResult& result) {
-  constexpr helps::Work of_the_scene =
-      100'000'000;  // to read it and build its tree; enough for a small frame
-  const helps::Work of_the_run =
-      helps::run_work(result.functional.totals, result.timed, result.one_node, stripped.get());
+  constexpr helps::Work least_budget = 2'000'000'000;  // two seconds
   const helps::Work budget =
-      run.what_helps == helps::Measuring::all ? helps::unlimited_work : of_the_scene + of_the_run;
+      run.what_helps == helps::Measuring::all
+          ? helps::unlimited_work
+          : std::max(least_budget, helps::run_work(result.functional.totals, result.timed, result.one_node,
+                                                   stripped.get()));
   helps::SharedLog shared{
       *result.functional.frame.log, std::move(stripped), {}, result.frame_config.memory, run.meter};
   keep(result.frame_config.keep, shared.options);

@@ -93,8 +93,8 @@ TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
     EXPECT_DOUBLE_EQ(with["energy"].get<double>(), static_cast<double>(total) * 1e-12);
     EXPECT_DOUBLE_EQ(with["power"].get<double>(), static_cast<double>(total) * 1e-15 / (end * 1e-12));
     EXPECT_DOUBLE_EQ(with["energy_delay"].get<double>(), static_cast<double>(total) * 1e-9 * end * 1e-12);
-    for (const char* figure :
-         {"energy_total", "energy_area", "energy", "power", "rays_a_joule", "energy_delay", "area"}) {
+    for (const char* figure : {"energy_total", "energy_area", "energy", "power", "rays_a_joule",
+                               "energy_a_ray", "energy_delay", "area"}) {
       EXPECT_EQ(with.erase(figure), 1U) << figure;
     }
     EXPECT_EQ(with, without) << config;

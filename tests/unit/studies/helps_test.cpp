@@ -1,4 +1,5 @@
 // What helps is measured: its promises are kept by the machines that it advises.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -189,8 +190,7 @@ TEST(WhatHelps, KeepsToItsBudget) {
     const WhatHelps some = what_helps(all.config, std::nullopt, all.machine, all.result, shared, budget);
     EXPECT_EQ(some.measured, budget >= replay);
     EXPECT_GT(unreplayed(some).work, 0U);
-    // Three quarters of the budget are for steps.
-    EXPECT_LE(count_of(some, Outcome::measured), 6U + count_of(all.what, Outcome::needless));
+    EXPECT_LE(count_of(some, Outcome::measured), 8U + count_of(all.what, Outcome::needless));
     EXPECT_EQ(count_of(some, Outcome::measured) > 0, some.measured);
     for (const Help& help : some.helps) {
       if (help.step && help.step->end) {
@@ -200,8 +200,105 @@ TEST(WhatHelps, KeepsToItsBudget) {
   }
 }
 
-// A budget for a single replay is enough for the advice of what limits a machine most.
-TEST(WhatHelps, ReplaysWhatIsBusiestWhereItCanReplayLittle) {
+// Settings of a machine that an architect of today may ask of: memories from one bank to DRAM, ways to memory
+// of every kind, contexts, a second level, three schemes, all structures and both ways of shading.
+std::vector<std::string> machine_of_today(std::uint64_t seed) {
+  test::Random random(seed);
+  std::vector<std::string> settings = {"image.width=64", "image.height=64", "image.max_depth=3"};
+  const auto one_of = [&](std::initializer_list<const char*> texts) {
+    return std::string(std::data(texts)[random() % texts.size()]);
+  };
+  const auto add = [&](const std::string& key, std::initializer_list<const char*> texts) {
+    settings.push_back(key + "=" + one_of(texts));
+  };
+  add("scene.source", {"teapot:6", "teapot:10", "room:10", "spheres:3", "tetra:5"});
+  add("structure.kind", {"octree", "grid", "bsp", "bvh"});
+  if (random() % 3 == 0) {
+    settings.insert(settings.end(),
+                    {"image.integrator=path", "image.samples=2", "image.width=40", "image.height=40"});
+  }
+  add("costs.preset", {"unit", "mc68020", "modern"});
+  add("node.clock", {"50 MHz", "500 MHz", "2 GHz"});
+  add("machine.nodes", {"4", "16", "64", "256"});
+  add("cache.size", {"2 KiB", "16 KiB", "64 KiB"});
+  add("cache.line", {"32 B", "64 B"});
+  add("packets.width", {"2", "4", "8", "16"});
+  add("packets.height", {"2", "8"});
+  const std::uint64_t scheme = random() % 8;
+  if (scheme < 6) {
+    add("node.contexts", {"1", "1", "2", "4"});
+    if (scheme == 5) {
+      settings.insert(settings.end(),
+                      {std::string("l2.sharing=shared"), "l2.size=" + one_of({"64 KiB", "1 MiB"})});
+    }
+  } else if (scheme == 6) {
+    settings.push_back("machine.scheme=space");
+  } else {
+    settings.push_back("machine.scheme=pipeline");
+  }
+  if (scheme == 6) {
+    return settings;
+  }
+  add("interconnect.kind", {"bus", "bus", "crossbar", "crossbar", "ideal"});
+  add("interconnect.width", {"4 B", "16 B", "64 B"});
+  add("interconnect.clock", {"33 MHz", "400 MHz", "1500 MHz"});
+  if (random() % 3 == 0) {
+    settings.insert(settings.end(), {std::string("memory.model=dram"),
+                                     "dram.preset=" + one_of({"ddr4-3200", "ddr5-4800", "hbm2"})});
+  } else {
+    add("memory.banks", {"1", "4", "16"});
+    add("memory.clock", {"33 MHz", "800 MHz"});
+  }
+  return settings;
+}
+
+// The step that is named within the work of a run is nearly the best of all, which --what-helps finds.
+TEST(WhatHelps, NamesNearlyTheBestStepWithinTheWorkOfARun) {
+  std::size_t tried = 0;
+  std::size_t near = 0;
+  double worst = 0.0;
+  std::string missed;
+  const std::size_t step = test::stride(8);
+  for (std::uint64_t seed = 0; tried < 60 / step; ++seed) {
+    const std::vector<std::string> settings = machine_of_today(seed);
+    std::optional<sim::Config> config;
+    std::optional<RunResult> run;
+    try {
+      config = sim::Config::from_text(run_schema(), "", "test", settings);
+      RunOptions options;
+      options.what_helps = Measuring::all;
+      run.emplace(run::run(*config, std::move(options)));
+    } catch (const sim::UserError&) {
+      continue;  // settings that exclude each other
+    }
+    ++tried;
+    const processors::program::WorkLog& log = *run->functional.frame.log;
+    SharedLog shared{log, nullptr, {}, {}};
+    if (processors::walk::StrippedLog::ways_of(run->machine) != 0) {
+      shared.stripped = processors::walk::StrippedLog::make(log, run->machine, std::uint64_t{1} << 30U);
+    }
+    const WhatHelps some = what_helps(
+        *config, std::nullopt, run->machine, run->timed, shared,
+        100'000'000 + run_work(run->functional.totals, run->timed, run->one_node, shared.stripped.get()));
+    const auto first = [](const WhatHelps& what) {
+      const std::vector<const Help*> named = best_helps(what);
+      return named.empty() ? 0.0 : *named[0]->step->saved;
+    };
+    const double lost = first(*run->helps) - first(some);
+    EXPECT_GE(lost, -1e-12);
+    near += lost <= 0.02 ? 1 : 0;
+    worst = std::max(worst, lost);
+    if (lost > 0.02) {
+      missed += fmt::format("\nseed {}: {:.3f}; of all: {}; named: {}", seed, lost, run->helps->sentence,
+                            some.sentence);
+    }
+  }
+  EXPECT_GE(20 * near, 19 * tried) << missed;
+  EXPECT_LT(worst, 0.2) << missed;
+}
+
+// A budget for a single replay is mostly enough to name something that helps.
+TEST(WhatHelps, NamesSomethingWhereItCanReplayOneStep) {
   std::size_t advised = 0;
   for (std::size_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
@@ -215,51 +312,15 @@ TEST(WhatHelps, ReplaysWhatIsBusiestWhereItCanReplayLittle) {
     const WhatHelps some = what_helps(config, std::nullopt, machine, result, shared, replay);
     ASSERT_TRUE(some.measured || result.end == 0);
     std::size_t replayed = 0;
-    double busiest = 0.0;
-    double chosen = 0.0;
-    const Counts counts = counts_of(machine, result);
     for (const Help& help : some.helps) {
       const MeasuredChange& change = help.step ? *help.step : *help.best;
-      if (change.most_saved >= worth_naming) {  // else it is known to be needless
-        const double busy = busy_share(help, machine, result, counts);
-        busiest = std::max(busiest, busy);
-        chosen = change.end ? busy : chosen;
-        replayed += change.end ? 1 : 0;
-      }
+      // Of others it is known without a replay that they save nothing.
+      replayed += change.end && change.most_saved >= worth_naming ? 1 : 0;
     }
     EXPECT_EQ(replayed, result.end > 0 ? 1U : 0U);
-    EXPECT_EQ(chosen, busiest);
     advised += best_helps(some).size();
   }
   EXPECT_GT(advised, 20U);
-}
-
-// Where one step can be replayed: another bank where there are few, else a faster clock.
-TEST(WhatHelps, OfBusyBanksTheLargerStepIsTriedFirst) {
-  test::Random random(1);
-  const processors::program::WorkLog log = test::random_log(random, 24, 24);
-  for (const auto& [banks, step] : {std::pair(1, "memory.banks"), std::pair(8, "memory.clock")}) {
-    MachineConfig wanted;
-    wanted.nodes = 128;
-    wanted.packets.width = wanted.packets.height = 1;
-    wanted.cache.organisation = processors::machine::CacheOrganisation::none;
-    wanted.interconnect.kind = memory::InterconnectKind::crossbar;
-    wanted.interconnect.width = 64;
-    wanted.banks.count = static_cast<std::uint32_t>(banks);
-    sim::Config config = test::configuration_of(test::assignments_of(wanted));
-    const MachineConfig machine = read_machine(config);
-    const MachineResult result = processors::replay::replay(log, machine);
-    const WhatHelps some = what_helps(config, std::nullopt, machine, result, SharedLog{log, nullptr, {}, {}},
-                                      replay_work(result, nullptr));
-    std::vector<std::string> replayed;
-    for (const Help& help : some.helps) {
-      // Without a replay it is known of some that they save nothing.
-      if (help.step && help.step->end && help.step->most_saved >= worth_naming) {
-        replayed.push_back(help.name);
-      }
-    }
-    EXPECT_EQ(replayed, std::vector<std::string>{step}) << banks << " banks";
-  }
 }
 
 TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
@@ -285,7 +346,7 @@ TEST(WhatHelps, AFasterNodeShortensAFrameOfComputingByItsClock) {
   const std::int64_t cycles = one.result.end / 10'000;
   EXPECT_EQ(one.result.end, cycles * 10'000);
   EXPECT_EQ(clock->step->end, cycles * 9'091) << "110 MHz";
-  EXPECT_EQ(clock->best->end, cycles) << "1 THz, a tick a cycle";
+  EXPECT_FALSE(clock->best) << "a clock has no useful end";
   EXPECT_EQ(best_helps(one.what)[0]->name, "machine.nodes") << "two nodes halve it, nearly";
 }
 
@@ -328,7 +389,7 @@ TEST(WhatHelps, TwiceTheWidthOfAFullBusHalvesTheFrame) {
   EXPECT_EQ(8 * *width->best->end, one.result.end) << "a line of 32 bytes in one beat";
   EXPECT_EQ(
       one.what.sentence,
-      "interconnect.width 4 B -> 8 B: frame 50.0 % shorter (at its best, interconnect.width 4 B -> 64 KiB: "
+      "interconnect.width 4 B -> 8 B: frame 50.0 % shorter (at its best, interconnect.width 4 B -> 32 B: "
       "87.5 %); the bus is 100.0 % busy");
 }
 
@@ -340,7 +401,7 @@ TEST(WhatHelps, TriesTwoStepsWhereNoneHelpsAlone) {
   assignments.insert(assignments.end(), {"machine.nodes=32", "memory.banks=1", "memory.busy_cycles=8"});
   const Case one(log, assignments);
   ASSERT_TRUE(one.what.pair.has_value()) << one.what.sentence;
-  EXPECT_NE(one.what.sentence.find(" bind together: "), std::string::npos) << one.what.sentence;
+  EXPECT_NE(one.what.sentence.find(" each alone saves less than "), std::string::npos) << one.what.sentence;
   EXPECT_TRUE(one.what.pair->first.starts_with("interconnect.") !=
               one.what.pair->second.starts_with("interconnect."))
       << one.what.sentence;
