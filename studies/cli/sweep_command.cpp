@@ -15,6 +15,7 @@
 #include "studies/progress/progress_line.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/share.h"
+#include "studies/sweep/store/axis_effects.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/sweep.h"
 #include "studies/tables/json_table.h"
@@ -61,6 +62,14 @@ std::string note_of_frames(const sweep::SweepPlan& plan) {
              ? ""
              : "note: the points have " + std::to_string(frames.size()) +
                    " different frames, which are not equal work; sweep.filter leaves one of them\n";
+}
+
+// The axes, those first that change the frame time most; nothing of a single one.
+std::string said_of_axes(const sweep::SweepReader& reader) {
+  const sweep::AxisEffects effects = sweep::axis_effects(reader);
+  return effects.axes.size() < 2
+             ? std::string()
+             : "matters most  " + sweep::effects_text(effects) + " (frame time, worst by best value)\n";
 }
 
 }  // namespace
@@ -114,7 +123,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
                               : sweep::best_points(*report.reader, arguments.best, arguments.budget).front));
     return;
   }
-  std::string text = said(report) + sweep::fastest_text(*report.reader);
+  std::string text = said(report) + sweep::fastest_text(*report.reader) + said_of_axes(*report.reader);
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
   if (!arguments.best.empty()) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "studies/sweep/store/axis_effects.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::report {
@@ -48,8 +49,9 @@ struct ReportPoints {
   std::vector<ReportAxis> axes;
   std::vector<ReportPoint> points;  ///< that have been timed, in the order of the plan
   std::size_t planned = 0;
-  std::size_t frames = 1;  ///< that differ in their scene, rays or image: frames of different work
-  bool priced = false;     ///< costs differ
+  std::size_t frames = 1;      ///< that differ in their scene, rays or image: frames of different work
+  bool priced = false;         ///< costs differ
+  sweep::AxisEffects effects;  ///< which axis changes the frame time most
   std::vector<std::pair<std::string, std::string>> settings;  ///< that all timed points share, by key
   std::vector<std::pair<std::string, std::string>> provenance;
 

@@ -194,6 +194,10 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
     answer.push_back(
         "What to change there: no single step of a numeric axis saves 0.05 % of its time, of those timed.");
   }
+  if (const std::string effects = sweep::effects_text(sweep.effects); !effects.empty()) {
+    answer.push_back("What matters most, frame times at the worst value of an axis by those at its best: " +
+                     effects + ".");
+  }
   if (sweep.points.size() < sweep.planned) {
     answer.push_back(
         fmt::format("{} of {} points have been timed so far; run `marti sweep` again for the rest.",

@@ -156,6 +156,23 @@ tables::Table front_table(const ReportPoints& sweep, const Chosen& chosen) {
   return table;
 }
 
+// A bar for each axis, the longest first: a tornado chart.
+ReportChart effects_chart(const sweep::AxisEffects& effects) {
+  tables::Table table("axis_effects", "Which setting matters most",
+                      {tables::text_column("axis", "keys that change together"),
+                       tables::text_column("fastest", "its value with the shortest frames"),
+                       tables::real_column("fastest_by", "1", "their time by that of all points"),
+                       tables::text_column("slowest", "its value with the longest frames"),
+                       tables::real_column("slowest_by", "1", "their time by that of all points"),
+                       tables::real_column("ratio", "1", "slowest by fastest")});
+  for (const sweep::AxisEffect& effect : effects.axes) {
+    table.add_row(
+        {effect.axis, effect.fastest, effect.fastest_by, effect.slowest, effect.slowest_by, effect.ratio()});
+  }
+  return make_chart(table.name(), table,
+                    "Geometric means of the frame time at the best and the worst value of each axis.");
+}
+
 // "teapot:12, 512 x 512 pixels; machine.nodes 1 to 256, cache.size 4 KiB to 64 KiB": the frame, and what is
 // varied.
 std::string about_sweep(const ReportPoints& sweep) {
@@ -203,6 +220,9 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   report.answer = answer_of(sweep, chosen);
   report.explorer = explorer_json(sweep, chosen, axis);
   add_live_charts(sweep, axis, report);
+  if (!sweep.effects.axes.empty()) {
+    report.charts.push_back(effects_chart(sweep.effects));
+  }
   constexpr std::size_t few = 12;
   report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});
   for (const auto& [key, value] : sweep.settings) {

@@ -13,8 +13,8 @@
 #include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/point_bounds.h"
 #include "studies/report/model/sweep_answer.h"
-#include "studies/report/read/axis_order.h"
 #include "studies/sweep/plan/axis_text.h"
+#include "studies/sweep/store/axis_order.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/tables/cell_number.h"
 
@@ -182,7 +182,7 @@ class Settings {
   bool begun_ = false;
 };
 
-ReportAxis make_axis(const AxisColumn& column) {
+ReportAxis make_axis(const sweep::AxisColumn& column) {
   ReportAxis axis;
   axis.name = column.name;
   axis.followers = column.followers;
@@ -266,7 +266,10 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     }
   }
   sweep.frames = frames.count();
-  for (const AxisColumn& column : order_axes(reader.axes(), values)) {
+  const std::vector<sweep::AxisColumn> columns = sweep::order_axes(reader.axes(), values);
+  sweep.effects = sweep::axis_effects(
+      columns, sim::mapped(sweep.points, [](const ReportPoint& point) { return point.figure("end"); }));
+  for (const sweep::AxisColumn& column : columns) {
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
       sweep.points[i].place.push_back(column.index[i]);
     }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -20,8 +21,8 @@
 #include "studies/report/page/html_text.h"
 #include "studies/report/page/page_files.h"
 #include "studies/report/page/report_page.h"
-#include "studies/report/read/axis_order.h"
 #include "studies/report/read/report_files.h"
+#include "studies/sweep/store/axis_effects.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/result_directory.h"
@@ -33,6 +34,7 @@
 namespace marti::studies {
 
 using namespace report;
+using namespace sweep;
 using namespace tables;
 
 namespace {
@@ -174,6 +176,51 @@ TEST(OrderAxes, JoinsKeysThatChangeTogether) {
   EXPECT_EQ(axes[1].values, (std::vector<Cell>{std::int64_t{1}, std::int64_t{4}}));
   EXPECT_EQ(axes[1].index[0], 1U);
   EXPECT_EQ(axes[2].followers, std::vector<std::string>{"ways"});
+}
+
+// Two values of a cache, three of nodes, on a frame time that is a product of both, and of `together` where
+// both are largest; without the points of `left_out`.
+AxisEffects effects_of(double together, const std::set<std::size_t>& left_out = {}) {
+  std::vector<std::vector<Cell>> points;
+  std::vector<double> times;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::int64_t cache = std::int64_t{1024} << (i / 3);
+    const std::int64_t nodes = std::int64_t{1} << (i % 3);
+    if (!left_out.contains(i)) {
+      points.push_back({cache, nodes, std::int64_t{7}});
+      times.push_back(1e6 * (cache == 1024 ? 1.25 : 1.0) / static_cast<double>(nodes) *
+                      (i == 5 ? together : 1.0));
+    }
+  }
+  const std::vector<std::string> names = {"cache.size", "machine.nodes", "fixed"};
+  return axis_effects(order_axes(names, points), times);
+}
+
+TEST(AxisEffects, AreTheFactorsOfAProduct) {
+  for (const std::set<std::size_t>& left_out : {std::set<std::size_t>{}, {1}, {0, 4}}) {
+    const AxisEffects effects = effects_of(1.0, left_out);
+    ASSERT_EQ(effects.axes.size(), 2U) << "an axis of one value has no effect";
+    EXPECT_EQ(effects.axes[0].axis, "machine.nodes");
+    EXPECT_NEAR(effects.axes[0].ratio(), 4.0, 1e-6);
+    EXPECT_EQ(effects.axes[0].fastest, "4");
+    EXPECT_EQ(effects.axes[1].slowest, "1 KiB");
+    EXPECT_NEAR(effects.axes[1].ratio(), 1.25, 1e-6);
+    EXPECT_TRUE(effects.interactions.empty());
+  }
+  const AxisEffects all = effects_of(1.0);
+  EXPECT_NEAR(all.axes[0].fastest_by, 0.5, 1e-12) << "4 nodes by the geometric mean of 1, 2 and 4";
+  EXPECT_EQ(effects_text(all), "machine.nodes 4.00 times, cache.size 1.25 times");
+}
+
+// Of the residuals of a 2 by 3 table with one larger cell, t: t/3 there, -t/3 below, -t/6 and t/6 beside (in
+// logarithms).
+TEST(AxisEffects, NameWhatActsTogether) {
+  const AxisEffects effects = effects_of(8.0);
+  ASSERT_EQ(effects.interactions.size(), 1U);
+  EXPECT_NEAR(effects.interactions[0].ratio, std::pow(8.0, 2.0 / 3.0), 1e-9);
+  EXPECT_NE(effects_text(effects).find("; cache.size and machine.nodes together 4.00 times"),
+            std::string::npos)
+      << effects_text(effects);
 }
 
 TEST(Choose, FindsTheFastestTheFrontAndItsKnee) {

@@ -1,10 +1,10 @@
-#include "studies/report/read/axis_order.h"
+#include "studies/sweep/store/axis_order.h"
 
 #include <algorithm>
 
 #include "studies/tables/cell_number.h"
 
-namespace marti::studies::report {
+namespace marti::studies::sweep {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::vector<AxisColumn> order_axes(std::span<const std::string> names,
   return axes;
 }
 
-}  // namespace marti::studies::report
+}  // namespace marti::studies::sweep

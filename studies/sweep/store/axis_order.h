@@ -8,7 +8,7 @@
 
 #include "studies/tables/table.h"
 
-namespace marti::studies::report {
+namespace marti::studies::sweep {
 
 struct AxisColumn {
   std::string name;
@@ -23,4 +23,4 @@ struct AxisColumn {
 [[nodiscard]] std::vector<AxisColumn> order_axes(std::span<const std::string> names,
                                                  std::span<const std::vector<tables::Cell>> points);
 
-}  // namespace marti::studies::report
+}  // namespace marti::studies::sweep
