@@ -90,7 +90,8 @@ void print(const std::string& text) {
 // The options that several commands have.
 
 CLI::Option* add_file(CLI::App* command, std::string& file) {
-  return command->add_option("CONFIG", file, "configuration file (TOML)")->type_name("FILE.toml");
+  return command->add_option("CONFIG", file, "configuration file (TOML); -: standard input")
+      ->type_name("FILE.toml");
 }
 
 void add_assignments(CLI::App* command, std::vector<std::string>& assignments) {
@@ -147,10 +148,9 @@ void run_within_command(const RunArguments& arguments, sim::Config& config, run:
 }
 
 void run_command(const RunArguments& arguments) {
-  keys::require_config_file(arguments.config);
   sim::Schema schema = run::run_schema();
   keys::declare_price_keys(schema);
-  sim::Config config = sim::Config::from_file(schema, arguments.config, arguments.assignments);
+  sim::Config config = keys::read_config(schema, arguments.config, arguments.assignments);
   run::RunOptions options;
   options.directory = arguments.directory;
   options.keep = run::KeptItems(arguments.keep);
@@ -202,12 +202,9 @@ struct StudyArguments {
 // thrown as InternalError, once all files are written.
 template <class Study>
 void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
-  if (!arguments.config.empty()) {
-    keys::require_config_file(arguments.config);
-  }
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
-                           : sim::Config::from_file(schema, arguments.config, arguments.assignments);
+                           : keys::read_config(schema, arguments.config, arguments.assignments);
   tables::refuse_other_results(arguments.directory, tables::database_name);
   tables::refuse_store_of_sweep(arguments.directory);
   const sim::MadeDirectory made = show::prepare_output(arguments.directory);
@@ -330,8 +327,7 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
     } catch (const sim::UserError& error) {
       throw sim::UserError("--limit: " + std::string(error.what()));
     }
-    keys::require_config_file(arguments.config);
-    sim::Config config = sim::Config::from_file(run::run_schema(), arguments.config, arguments.assignments);
+    sim::Config config = keys::read_config(run::run_schema(), arguments.config, arguments.assignments);
     const sim::MadeDirectory made = show::prepare_output(arguments.directory);
     print(sim::with_places(
         config, [&] { return run::write_traces(config, arguments.options, arguments.directory); }));

@@ -75,9 +75,8 @@ std::string said_of_axes(const sweep::SweepReader& reader) {
 }  // namespace
 
 void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&)) {
-  keys::require_config_file(arguments.config);
   const sweep::SweepOptions options = options_of(arguments);
-  sim::Config config = sim::Config::from_file(sweep::sweep_schema(), arguments.config, arguments.assignments);
+  sim::Config config = keys::read_config(sweep::sweep_schema(), arguments.config, arguments.assignments);
   if (arguments.budget && (!std::isfinite(*arguments.budget) || *arguments.budget < 0.0)) {
     throw sim::UserError("--budget: must be a cost of at least 0");
   }

@@ -116,10 +116,11 @@ bool is_control(const sim::Key& key) {
 
 Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments,
                  sim::WorkMeter* meter)
-    : name_(file.string()), assignments_(std::move(assignments)), schema_(run::run_schema()) {
-  keys::require_config_file(file);
+    : assignments_(std::move(assignments)), schema_(run::run_schema()) {
+  keys::ConfigText given = keys::read_config_text(file);
+  text_ = std::move(given.text);
+  name_ = std::move(given.name);
   keys::declare_price_keys(schema_);
-  text_ = sim::read_file(file, sim::longest_config);
   sim::Config config = sim::Config::from_text(schema_, text_, name_, assignments_);
   run::RunOptions options;
   options.prices = keys::read_given_prices(config);

@@ -1,19 +1,26 @@
 #include "studies/keys/config_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/files.h"
+#include "sim/input_files.h"
 #include "sim/nearest.h"
+#include "sim/units.h"
 
 namespace marti::studies::keys {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view standard_input = "standard input";
 
 // The names of the directories, or of the other files, in `directory`; sorted, empty if it cannot be read.
 std::vector<std::string> names_in(const fs::path& directory, bool directories) {
@@ -54,9 +61,7 @@ fs::path nearest_file(const fs::path& file) {
   return near.empty() ? fs::path() : parent / near;
 }
 
-}  // namespace
-
-void require_config_file(const fs::path& file) {
+void require_file(const fs::path& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) {
     const std::vector<std::string> names = names_in(file, false);
@@ -72,6 +77,44 @@ void require_config_file(const fs::path& file) {
       file.string() + ": there is no such file" +
       (near.empty() ? "" : " (did you mean \"" + near.string() + "\"?)") +
       (file.is_relative() ? "; the current directory is " + fs::current_path(error).string() : ""));
+}
+
+std::string read_standard_input() {
+  std::string text;
+  std::array<char, 65536> part{};
+  while (text.size() <= static_cast<std::size_t>(sim::longest_config)) {
+    const std::size_t read = std::fread(part.data(), 1, part.size(), stdin);
+    text.append(part.data(), read);
+    if (read < part.size()) {
+      break;
+    }
+  }
+  if (std::ferror(stdin) != 0) {
+    throw sim::UserError(std::string(standard_input) + ": cannot be read");
+  }
+  if (text.size() > static_cast<std::size_t>(sim::longest_config)) {
+    throw sim::UserError(std::string(standard_input) + ": is longer than " +
+                         sim::print_size(sim::longest_config));
+  }
+  return text;
+}
+
+}  // namespace
+
+ConfigText read_config_text(const fs::path& file) {
+  if (file == "-") {
+    return {read_standard_input(), std::string(standard_input)};
+  }
+  require_file(file);
+  ConfigText config{sim::read_file(file, sim::longest_config), file.string()};
+  sim::note_input(file);
+  return config;
+}
+
+sim::Config read_config(const sim::Schema& schema, const fs::path& file,
+                        std::span<const std::string> assignments) {
+  const ConfigText config = read_config_text(file);
+  return sim::Config::from_text(schema, config.text, config.name, assignments);
 }
 
 }  // namespace marti::studies::keys

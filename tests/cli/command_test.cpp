@@ -257,6 +257,32 @@ TEST(Command, TheVoxelCutReportsWhatItSavedAndWhatItCost) {
   expect_refused(run + cut + " --set structure.kind=bsp", "image.voxel_cut");
 }
 
+TEST(Command, AHyphenIsTheConfigurationOnStandardInput) {
+  const TemporaryDirectory directory;
+  const std::string file = shipped("marti.toml");
+  nlohmann::json of_file = printed_json("run " + small_run);
+  nlohmann::json piped = printed_json("run -" + small_teapot + " < " + file);
+  EXPECT_EQ(piped["config"]["file"], "standard input");
+  of_file["config"].erase("file");
+  piped["config"].erase("file");
+  EXPECT_EQ(piped, of_file);
+  const fs::path out = directory.path() / "out";
+  EXPECT_EQ(
+      marti("sweep - --axis machine.nodes=1,2" + small_teapot + " -o " + quoted(out) + " < " + file).status,
+      0);
+  EXPECT_EQ(
+      marti("trace -" + small_teapot + " -o " + quoted(directory.path() / "traces") + " < " + file).status,
+      0);
+  const Outcome wrong =
+      shell("printf 'machine.nodes = 2\\nmachine.nods = 3\\n' | " + quoted(MARTI_PROGRAM) + " run -");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(says(wrong, "standard input:2: machine.nods: unknown key")) << "with its line";
+  const Outcome endless = shell("yes '# long' | " + quoted(MARTI_PROGRAM) + " run -");
+  EXPECT_EQ(endless.status, 2);
+  EXPECT_TRUE(says(endless, "standard input: is longer than 1 MiB"));
+  expect_refused("run - < /", "standard input: cannot be read");
+}
+
 TEST(Command, AnInterruptedRunLeavesNoFile) {
   const TemporaryDirectory directory;
   const Outcome outcome = shell(
