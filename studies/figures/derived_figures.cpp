@@ -1,5 +1,6 @@
 #include "studies/figures/derived_figures.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -191,6 +192,13 @@ std::span<const FigureEntry> derived_figures() {
     return made;
   }();
   return figures;
+}
+
+std::string loss_text(std::string_view loss) {
+  // The activity "idle" is another figure: it has the time of all nodes that wait for the last one, too.
+  std::string text(loss == "idle" ? "no work at all" : loss);
+  std::ranges::replace(text, '_', ' ');
+  return text;
 }
 
 std::string_view gain_of(std::string_view loss) {

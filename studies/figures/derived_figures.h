@@ -18,6 +18,8 @@ namespace marti::studies::figures {
 inline constexpr std::array<std::string_view, 5> loss_names = {"extra_misses", "contention", "imbalance",
                                                                "overhead", "idle"};
 
+/// A part of the lost speed-up for people: "extra misses".
+[[nodiscard]] std::string loss_text(std::string_view loss);
 /// Through what n nodes are faster than n times one, where this part is below 0: "fewer misses ...".
 [[nodiscard]] std::string_view gain_of(std::string_view loss);
 

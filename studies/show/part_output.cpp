@@ -8,12 +8,53 @@
 #include <vector>
 
 #include "sim/statistics.h"
+#include "sim/units.h"
+#include "studies/keys/setting_value.h"
 #include "studies/show/json_parts.h"
 #include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::show {
+
+namespace {
+
+// "memory.clock is 33 MHz, the default, beside node.clock of 1.5 GHz".
+std::vector<std::string> clock_notes(const std::vector<sim::EffectiveValue>& values) {
+  constexpr double far = 4.0;
+  const auto hertz = [](const sim::EffectiveValue& value) {
+    return sim::parse_frequency(keys::plain_setting(value.value));
+  };
+  const sim::EffectiveValue* fastest = nullptr;
+  for (const sim::EffectiveValue& value : values) {
+    if (value.key.ends_with(".clock") && value.given &&
+        (fastest == nullptr || hertz(value) > hertz(*fastest))) {
+      fastest = &value;
+    }
+  }
+  std::vector<std::string> notes;
+  for (const sim::EffectiveValue& value : values) {
+    if (fastest != nullptr && value.key.ends_with(".clock") && !value.given &&
+        hertz(*fastest) > far * hertz(value)) {
+      notes.push_back(fmt::format("{} is {}, the default, beside {} of {}", value.key,
+                                  keys::plain_setting(value.value), fastest->key,
+                                  keys::plain_setting(fastest->value)));
+    }
+  }
+  return notes;
+}
+
+}  // namespace
+
+nlohmann::ordered_json notes_json(const run::RunResult& r) { return clock_notes(r.values); }
+
+std::string note_lines(const run::RunResult& r) {
+  std::string text;
+  for (const std::string& note : clock_notes(r.values)) {
+    text += fmt::format("  {:<12}{}\n", "note", note);
+  }
+  return text;
+}
 
 nlohmann::ordered_json context_json(const run::RunResult& r) {
   if (r.timed.contexts.nodes.empty()) {

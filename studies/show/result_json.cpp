@@ -186,6 +186,7 @@ std::string json_of(const run::RunResult& r, const std::map<std::string, std::st
                   {"nodes", r.machine.nodes},
                   {"node_clock_period_ps", r.machine.clock.period()},
                   {"one_node_time_ps", r.one_node.end},
+                  {"notes", notes_json(r)},
                   {"bounds", bounds_json(r)},
                   {"what_helps", helps_json(r)},
                   {"per_cluster", list_json(timed.clusters, cluster_json)},

@@ -75,10 +75,9 @@ std::string loss_lines(const run::RunResult& r) {
   std::string text = fmt::format("\nlost speed-up {:.2f} of {}: n - s, and its share of the nodes' time\n",
                                  n - *speed_up, r.machine.all_nodes());
   for (const std::string_view loss : figures::loss_names) {
-    std::string name(loss);
-    std::ranges::replace(name, '_', ' ');
     const double part = r.figure("lost_" + std::string(loss)).value_or(0.0);
-    text += fmt::format("  {:<14}{:>12.2f} {:>11}\n", name, part, tables::percent(part / n));
+    text +=
+        fmt::format("  {:<14}{:>12.2f} {:>11}\n", figures::loss_text(loss), part, tables::percent(part / n));
   }
   return *speed_up > n ? text + gain_line(r) : text;
 }

@@ -121,6 +121,7 @@ void machine_lines(Lines out, const run::RunResult& r) {
                  tables::counted(machine.clusters, "cluster"), tables::counted(machine.nodes, "node"),
                  processors::machine::scheme_names[static_cast<std::size_t>(machine.scheme)],
                  tables::counted(r.timed.packets, "packet"), machine.packets.width, machine.packets.height);
+  out = std::ranges::copy(note_lines(r), out).out;
   const bool spread = machine.placement == processors::machine::Placement::distributed;
   fmt::format_to(
       out, "database      {}, {} cop{}: {} in all{}\n",

@@ -41,7 +41,7 @@ TEST_F(PlanCommand, SaysWhatIsLeftOutAndWhatIsKept) {
   const std::string scene = "--set scene.source=teapot:2 --set image.max_depth=3 ";
   const Outcome plain = run(scene);
   EXPECT_EQ(plain.status, 0);
-  EXPECT_TRUE(says(plain, "\nplan          left out: refraction-rays (0 of 3 materials"));
+  EXPECT_TRUE(says(plain, "\nplan          left out: refraction-rays (none of the 3 materials"));
   const nlohmann::json planned = json(scene);
   EXPECT_EQ(planned["plan"]["refraction-rays"]["decision"], "left out");
   EXPECT_EQ(planned["plan"]["textures"]["decision"], "not applicable");

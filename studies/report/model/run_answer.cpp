@@ -43,14 +43,14 @@ std::string largest_loss(const tables::RunJson& run) {
   }
   constexpr double told = 0.005;  // what is shown as 0.00 is not told
   if (all < -told) {
-    return fmt::format("That is more than one node can do as many times, mostly through {}.",
+    return fmt::format("That is more than so many single nodes would do, mostly through {}.",
                        figures::gain_of(least.first));
   }
   if (largest.first.empty() || all <= 0.0) {
     return {};
   }
-  return fmt::format("As much as {:.2f} nodes could do is lost, the largest part ({:.2f}) to {}{}.", all,
-                     largest.second, words(largest.first),
+  return fmt::format("The speed-up is {:.2f} below the number of nodes, most of it ({:.2f}) through {}{}.",
+                     all, largest.second, figures::loss_text(largest.first),
                      gained < told ? "" : fmt::format("; {:.2f} are gained elsewhere", gained));
 }
 

@@ -57,9 +57,10 @@ PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::
     choice = {false, false, "image.max_depth is 1"};
   } else {
     choice.needed = needed;
-    choice.fact = of(sending, facts.needs.shaded, "materials that a ray may meet ") + std::string(verb);
+    choice.fact = (sending == 0 ? "none" : std::to_string(sending)) + " of the " +
+                  std::to_string(facts.needs.shaded) + " materials that rays can reach " + std::string(verb);
     if (beside > 0) {
-      choice.fact += "; " + std::to_string(beside) + " that no ray can meet would";
+      choice.fact += "; " + std::to_string(beside) + " that none can reach would be";
     }
     if (needed && sending == 0) {
       choice.fact += ", but light that cannot be refracted is reflected";
@@ -145,9 +146,9 @@ Plan make_plan(const PlanFacts& facts, std::vector<PlanEntry> further) {
   Plan plan;
   plan.entries.push_back(shadow_rays(facts));
   plan.entries.push_back(spawned_rays(facts, PlanItem::reflection_rays, needs.reflection_rays,
-                                      needs.reflecting, needs.reflecting_beside, "reflect"));
+                                      needs.reflecting, needs.reflecting_beside, "are reflective"));
   plan.entries.push_back(spawned_rays(facts, PlanItem::refraction_rays, needs.refraction_rays,
-                                      needs.transmitting, needs.transmitting_beside, "let light through"));
+                                      needs.transmitting, needs.transmitting_beside, "are transparent"));
   plan.entries.push_back(textures(facts));
   plan.entries.push_back(coordinates(facts));
   plan.entries.push_back(normals(facts));

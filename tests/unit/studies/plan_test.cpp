@@ -89,7 +89,7 @@ TEST(Plan, LeavesOutWhatIsBehindTheCamera) {
   }
   Plan plan = plan_of(scene, small_frame().render);
   EXPECT_EQ(testing::find_entry(plan, PlanItem::reflection_rays)->fact,
-            "0 of 1 materials that a ray may meet reflect; 1 that no ray can meet would");
+            "none of the 1 materials that rays can reach are reflective; 1 that none can reach would be");
   EXPECT_EQ(planned_options(plan, facts_of_frame(scene, small_frame().render, {})).max_depth, 1U);
 }
 
