@@ -46,7 +46,7 @@ void check_timing(const DramConfig& config) {
   }
   // Each rank may have rows to close, and then an access must be possible: from an activation to the next one
   // of the bank.
-  const std::int64_t refresh = timing.rfc + std::int64_t{config.ranks} * (timing.rp + 2);
+  const std::int64_t refresh = timing.rfc + std::int64_t{config.ranks} * (timing.rp + 2) + timing.ppd;
   const std::int64_t column = std::max(timing.rtp, std::max(timing.cl, timing.cwl) + timing.bl + timing.wr);
   const std::int64_t access = std::max({timing.rc, timing.ras + timing.rp, timing.faw,
                                         std::max(timing.rcd, timing.rcd_write) + column + timing.rp});

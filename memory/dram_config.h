@@ -41,6 +41,7 @@ struct DramTiming {
   std::int64_t wtr_s = 3;        ///< end of written data to a read
   std::int64_t wtr_l = 9;        ///< of the same bank group
   std::int64_t rtp = 9;          ///< read to precharge
+  std::int64_t ppd = 1;          ///< precharge to precharge of the same rank
   std::int64_t rtw_gap = 2;      ///< free cycles of the data bus between data read and data written
   std::int64_t rank_gap = 2;     ///< free cycles of the data bus between data of two ranks
   std::int64_t refi = 9364;      ///< between two refreshes; 0: no refresh

@@ -15,8 +15,10 @@ DramDevice::DramDevice(const DramConfig& config)
     : timing_(config.timing_of_commands()),
       activate_cycles_(config.activate_cycles),
       column_cycles_(config.column_cycles),
+      refresh_later_(config.activate_cycles - 1),
       settling_(std::max({timing_.rc, timing_.ras + timing_.rp, timing_.rtp + timing_.rp, timing_.rfc,
-                          timing_.cwl + timing_.bl + timing_.wr + timing_.rp})),
+                          timing_.cwl + timing_.bl + timing_.wr + timing_.rp, timing_.ppd}) +
+                refresh_later_),
       one_data_bus_(!config.pseudo_channels),
       one_command_bus_(!config.two_command_buses),
       banks_of_rank_(config.banks_of_rank()),
@@ -37,6 +39,7 @@ void DramDevice::issue(DramCommand command, const DramPlace& place, DramCycle cy
       return;
     case DramCommand::precharge:
       raise(of(bank.next, DramCommand::activate), cycle + timing_.rp);
+      raise(of(ranks_[place.rank].next, DramCommand::precharge), cycle + timing_.ppd);
       bank.row = no_row;
       return;
     case DramCommand::read:
@@ -71,6 +74,7 @@ void DramDevice::issue_activate(const DramPlace& place, DramCycle cycle) {
   raise(of(groups_[place.group], DramCommand::activate), cycle + timing_.rrd_l);
   Rank& rank = ranks_[place.rank];
   raise(of(rank.next, DramCommand::activate), cycle + timing_.rrd_s);
+  raise(rank.precharge_all, cycle + timing_.ras);
   // The fifth activation from here must wait for the end of the window that begins with this one.
   rank.activations[rank.oldest] = cycle + timing_.faw;
   rank.oldest = (rank.oldest + 1) % 4;
@@ -121,9 +125,8 @@ DramDevice::Course DramDevice::course(const DramPlace& place, bool write, DramCy
     raise(course.activate, course.precharge + std::max(timing_.rp, bus_cycles(DramCommand::precharge)));
   }
   raise(course.column, course.activate + (write ? timing_.rcd_write : timing_.rcd));
-  if (one_command_bus_) {
-    raise(course.column, course.activate + bus_cycles(DramCommand::activate));
-  }
+  // With a command bus of their own, reads and writes of a cycle come before what opens rows in it.
+  raise(course.column, course.activate + (one_command_bus_ ? bus_cycles(DramCommand::activate) : 1));
   return course;
 }
 
@@ -133,7 +136,8 @@ bool DramDevice::has_open_row(std::uint32_t rank) const {
 }
 
 DramCycle DramDevice::earliest_precharge_all(std::uint32_t rank) const {
-  DramCycle cycle = long_ago;
+  // The command is one for all banks, so it waits for activations of banks that are closed again, too.
+  DramCycle cycle = std::max(ranks_[rank].precharge_all, of(ranks_[rank].next, DramCommand::precharge));
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     if (banks_[i].row != no_row) {
       raise(cycle, of(banks_[i].next, DramCommand::precharge));
@@ -143,6 +147,7 @@ DramCycle DramDevice::earliest_precharge_all(std::uint32_t rank) const {
 }
 
 void DramDevice::precharge_all(std::uint32_t rank, DramCycle cycle) {
+  raise(of(ranks_[rank].next, DramCommand::precharge), cycle + timing_.ppd);
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     if (banks_[i].row != no_row) {
       raise(of(banks_[i].next, DramCommand::activate), cycle + timing_.rp);
@@ -154,13 +159,14 @@ void DramDevice::precharge_all(std::uint32_t rank, DramCycle cycle) {
 DramCycle DramDevice::earliest_refresh(std::uint32_t rank) const {
   DramCycle cycle = long_ago;
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
-    raise(cycle, of(banks_[i].next, DramCommand::activate));
+    raise(cycle, of(banks_[i].next, DramCommand::activate) + refresh_later_);
   }
   return cycle;
 }
 
 DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed) {
-  const DramCycle start = closed || !has_open_row(rank) ? cycle : cycle + std::max<DramCycle>(1, timing_.rp);
+  const DramCycle start =
+      closed || !has_open_row(rank) ? cycle : cycle + std::max<DramCycle>(1, timing_.rp + refresh_later_);
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     banks_[i].row = no_row;
     of(banks_[i].next, DramCommand::activate) = start + timing_.rfc;

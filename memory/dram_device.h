@@ -118,6 +118,7 @@ class DramDevice {
     Times next{};
     std::array<DramCycle, 4> activations{};  // the last four, oldest at `oldest`
     std::uint32_t oldest = 0;
+    DramCycle precharge_all = 0;  // allowed from here on, as far as the activations tell
   };
 
   static void raise(DramCycle& time, DramCycle to) { time = std::max(time, to); }
@@ -131,6 +132,7 @@ class DramDevice {
   DramTiming timing_;
   DramCycle activate_cycles_;
   DramCycle column_cycles_;
+  DramCycle refresh_later_;  // than an activation of the bank would be allowed, which is counted from its end
   DramCycle settling_;
   bool one_data_bus_;
   bool one_command_bus_;
@@ -142,10 +144,10 @@ class DramDevice {
 
 inline DramCycle DramDevice::earliest(DramCommand command, const DramPlace& place) const {
   const DramCycle bank = of(banks_[place.bank].next, command);
-  if (command == DramCommand::precharge) {
-    return bank;
-  }
   const Rank& rank = ranks_[place.rank];
+  if (command == DramCommand::precharge) {
+    return std::max(bank, of(rank.next, command));
+  }
   DramCycle cycle = std::max({bank, of(groups_[place.group], command), of(rank.next, command)});
   if (command == DramCommand::activate) {
     cycle = std::max(cycle, rank.activations[rank.oldest]);

@@ -88,7 +88,7 @@ DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, 
       opened = true;
       prepared_ = from;
       // Where reads and writes have a command bus of their own, only the device holds them back.
-      from = two_command_buses_ ? cycle : from;
+      from = two_command_buses_ ? cycle + 1 : from;
     }
   }
 }

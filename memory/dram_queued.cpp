@@ -35,7 +35,7 @@ std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address ad
     ++statistics_.forwarded;
     return DramDone{tag, {request.arrival + 1, request.arrival + 1}};
   }
-  settle(request.arrival);
+  settle(request.arrival, true);
   std::uint32_t place = 0;
   if (unused_.empty()) {
     place = static_cast<std::uint32_t>(accesses_.size());
@@ -86,7 +86,8 @@ std::optional<DramDone> DramQueued::serve_alone(const DramRequest& request, std:
   count_queued(request.arrival, course.column);
   now_ = course.column;
   // As step() leaves it, which decides anew at each command by what waits before it.
-  writing_ = request.write || (course.activate >= 0 && course.activate < course.column);
+  writing_ =
+      request.write || two_command_buses_ || (course.activate >= 0 && course.activate + 1 < course.column);
   return DramDone{tag, {course.first(), device_.end_of_data(moving, course.column)}};
 }
 
@@ -110,10 +111,13 @@ void DramQueued::fill() {
   }
 }
 
-void DramQueued::settle(DramCycle cycle) {
+void DramQueued::settle(DramCycle cycle, bool asked) {
   if (now_ < cycle) {
     fill();
-    writing_ = write_mode();
+    const DramCycle first = now_ + 1;
+    if (first < refresh_due_ && (asked || first < cycle)) {
+      writing_ = write_mode();
+    }
     now_ = cycle;
   }
 }
@@ -132,9 +136,10 @@ void DramQueued::pick_among(const std::vector<Burst>& bursts, Kind kind, DramCyc
                            return other.place.bank == burst.place.bank;
                          });
     if (!blocked) {
-      const DramCycle cycle = std::max({from, slot(command), device_.earliest(command, burst.place)});
-      if (cycle < best.cycle) {
-        best = {cycle, kind, command, i};
+      const Pick pick{std::max({from, slot(command), device_.earliest(command, burst.place)}), kind, command,
+                      i};
+      if (goes_first(pick, best)) {
+        best = pick;
       }
     }
     if (kind == Kind::queue && cap_ > 0 && burst.passed >= cap_) {
@@ -167,7 +172,7 @@ DramQueued::Pick DramQueued::pick() const {
     queued = {};
     pick_among(writing_ ? reads_ : writes_, Kind::queue, now_ + 1, queued);
   }
-  if (queued.cycle < best.cycle && queued.cycle < refresh_due_) {
+  if (goes_first(queued, best) && queued.cycle < refresh_due_) {
     return queued;
   }
   if (refresh_due_ < best.cycle) {
@@ -197,7 +202,7 @@ std::optional<DramDone> DramQueued::step() {
   sim::ensure(cycle != never, "a DRAM channel without an access has no next command");
   const Pick pick = *next_;
   next_.reset();
-  settle(cycle);
+  settle(cycle, two_command_buses_ || pick.kind != Kind::active);
   std::optional<DramDone> done;
   if (pick.kind == Kind::active) {
     done = issue(active_, pick);
@@ -208,6 +213,8 @@ std::optional<DramDone> DramQueued::step() {
   }
   if (!two_command_buses_) {
     fill();
+  } else if (pick.kind == Kind::queue && is_column(pick.command)) {
+    writing_ = write_mode();  // before the cycle's command that opens or closes a row is chosen
   }
   return done;
 }
@@ -216,8 +223,12 @@ void DramQueued::use_slot(DramCommand command, DramCycle cycle) {
   const DramCycle free = cycle + device_.bus_cycles(command);
   if (!two_command_buses_) {
     next_column_ = next_row_ = free;
+  } else if (is_column(command)) {
+    next_column_ = free;
   } else {
-    (is_column(command) ? next_column_ : next_row_) = free;
+    next_row_ = free;
+    // A cycle's read or write is chosen first.
+    next_column_ = std::max(next_column_, cycle + 1);
   }
 }
 

@@ -80,6 +80,11 @@ class DramQueued {
   [[nodiscard]] DramCycle slot(DramCommand command) const {
     return is_column(command) ? next_column_ : next_row_;
   }
+  // Whether a command comes before another one: with two command buses, a cycle's read or write goes first.
+  [[nodiscard]] bool goes_first(const Pick& pick, const Pick& other) const {
+    return pick.cycle < other.cycle || (two_command_buses_ && pick.cycle == other.cycle &&
+                                        is_column(pick.command) && !is_column(other.command));
+  }
   // Finds the burst whose command can come first, from cycle `from` on, if that is before `best`.
   void pick_among(const std::vector<Burst>& bursts, Kind kind, DramCycle from, Pick& best) const;
   void pick_refresh(Pick& best) const;
@@ -89,8 +94,9 @@ class DramQueued {
   std::optional<DramDone> serve_alone(const DramRequest& request, std::uint64_t tag, sim::Ticks known);
   // Whether all bytes of a read are those of writes that wait.
   [[nodiscard]] bool waits_to_be_written(const DramRequest& request, Address address) const;
-  // Makes `cycle` the present; what is served was decided anew in each cycle up to it.
-  void settle(DramCycle cycle);
+  // Makes `cycle` the present. Whether writes are served was decided anew in each cycle up to it in which the
+  // queues were asked for a command: while no refresh was due, and in `cycle` itself if `asked`.
+  void settle(DramCycle cycle, bool asked);
   // Whether writes are to be served, given what waits.
   [[nodiscard]] bool write_mode() const;
   std::optional<DramDone> issue(std::vector<Burst>& from, const Pick& pick);

@@ -45,6 +45,7 @@ constexpr std::array times = std::to_array<TimeKey>({
     {"dram.twtr_s", &DramTiming::wtr_s, "cycles from the last data written to a read of another bank group"},
     {"dram.twtr_l", &DramTiming::wtr_l, "cycles from the last data written to a read of the same bank group"},
     {"dram.trtp", &DramTiming::rtp, "cycles from a read to a precharge"},
+    {"dram.tppd", &DramTiming::ppd, "cycles between two precharges of a rank"},
     {"dram.trefi", &DramTiming::refi, "cycles between two refreshes; 0: no refresh"},
     {"dram.trfc", &DramTiming::rfc, "cycles of one refresh"},
 });

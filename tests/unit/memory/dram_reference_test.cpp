@@ -1,12 +1,11 @@
 // DRAM channels against figures of other simulators, for streams that are defined exactly.
 //
 // The figures are of Ramulator 2.1 (github.com/CMU-SAFARI/ramulator2, commit c5b1c3a), fed with the streams
-// of dram_streams.h: DDR4-2400R, 8 Gb x8, one channel of one rank, queues of 32 reads and 32 writes. Its own
+// of dram_streams.h: one channel of each preset, queues of 32 lines read and 32 written. Its own
 // scheduler FRFCFS; its schedulers for FCFS and its closed pages were added to it for these figures.
 // DRAMsim3 (github.com/umd-memsys/DRAMsim3, commit 2981759) differs from them by up to 4.5 % in the latency
 // of random reads below half of the peak, 0.6 % in the bandwidth of random reads without a pause and 16 %
-// with writes. Reads agree to the cycle here; the tolerances for writes and for the other standards are
-// below.
+// with writes. Here all figures agree to the last digit but for writes served first come, first served.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,11 +21,15 @@ using F = DramField;
 
 enum class Mapping { column_first, group_first, row_low };
 
-std::vector<DramFieldBits> fields(Mapping mapping) {
+// A line of 64 bytes is `bursts` bursts of one row.
+std::vector<DramFieldBits> fields(Mapping mapping, std::int64_t bursts) {
   switch (mapping) {
     case Mapping::column_first:
       return {{F::column}, {F::channel}, {F::rank}, {F::bank_group}, {F::bank}, {F::row}};
     case Mapping::group_first:
+      if (bursts == 2) {
+        return {{F::column, 1}, {F::bank_group}, {F::column}, {F::channel}, {F::rank}, {F::bank}, {F::row}};
+      }
       return {{F::bank_group}, {F::column}, {F::channel}, {F::rank}, {F::bank}, {F::row}};
     case Mapping::row_low:
       return {{F::column}, {F::row}, {F::bank}, {F::bank_group}, {F::rank}, {F::channel}};
@@ -44,6 +47,7 @@ struct Figure {
   double mean_cycles;  // with a load, from arrival; without one, from a queue that is always full
   DramCycle last_read;
   std::int64_t hits, misses, conflicts, refreshes;
+  std::size_t preset = 0;
 };
 
 // clang-format off
@@ -127,6 +131,33 @@ constexpr auto figures = std::to_array<Figure>({
     {DramPolicy::fcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.1, false, 41.392, 2012546, 0, 50000, 0, 0},
     {DramPolicy::fcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.25, false, 108.846, 800928, 0, 50000, 0, 0},
     {DramPolicy::fcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.5, false, 158758.808, 720337, 0, 50000, 0, 0},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "seq", 0, true, 339.677, 461070, 49124, 876, 0, 49, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0, true, 499.449, 655661, 7, 1132, 48861, 69, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.25, true, 176.040, 1610801, 4, 5287, 44709, 171, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.5, true, 280.644, 801028, 4, 2497, 47499, 85, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rw9010", 0.5, true, 286.450, 801399, 7, 3954, 46039, 85, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "rand1G", 0.5, true, 279.527, 801038, 3, 2495, 47502, 85, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "rw9010", 0.5, true, 284.962, 801185, 5, 4108, 45887, 85, 1},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0, true, 499.507, 655748, 0, 50000, 0, 69, 1},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.5, true, 245.144, 801006, 0, 50000, 0, 85, 1},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.5, true, 238.868, 801134, 0, 50000, 0, 85, 1},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "seq", 0, true, 98.896, 124053, 96752, 1022, 2226, 62, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0, true, 136.510, 168211, 49556, 1260, 49184, 86, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.1, true, 74.484, 1000743, 49749, 8033, 42218, 512, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.5, true, 158.402, 200134, 49660, 1560, 48780, 102, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rw9010", 0.5, true, 214.228, 200206, 47975, 2553, 49472, 102, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "rw9010", 0.5, true, 212.111, 200276, 47926, 2520, 49554, 102, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "seq", 0, true, 358.938, 516750, 49917, 50083, 0, 264, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0, true, 114.216, 130966, 48819, 50343, 838, 66, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.5, true, 110.575, 200058, 49475, 50281, 244, 102, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.7, true, 195.996, 143699, 49107, 50255, 638, 72, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.8, true, 3057.011, 131531, 48782, 50345, 873, 66, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.9, true, 10006.519, 131298, 48770, 50333, 897, 66, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.8, false, 91.471, 125868, 49439, 50000, 561, 0, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.5, true, 139.605, 200107, 47715, 50292, 1993, 102, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.7, true, 195.377, 143698, 49094, 50277, 629, 72, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.9, false, 2973.602, 117286, 49086, 50000, 914, 0, 2},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rw9010", 0.5, true, 140.616, 200185, 47734, 50300, 1966, 102, 2},
 });
 // clang-format on
 
@@ -134,25 +165,25 @@ class Reference : public testing::TestWithParam<Figure> {};
 
 TEST_P(Reference, AgreesWithRamulator) {
   const Figure& figure = GetParam();
-  DramConfig config = dram_preset(0);
+  DramConfig config = dram_preset(figure.preset);
+  const std::int64_t bursts = 64 / config.burst_bytes;
   config.policy = figure.policy;
   config.page = figure.page;
-  config.mapping = fields(figure.mapping);
+  config.mapping = fields(figure.mapping, bursts);
   config.reorder_cap = 0;
+  config.queue = static_cast<std::uint32_t>(32 * bursts);
   if (!figure.refresh) {
     config.timing.refi = 0;
   }
   const test::StreamResult result =
-      test::run_stream(config, test::make_stream(config, {figure.pattern, figure.load}));
+      test::run_stream(config, test::make_stream(config, {figure.pattern, figure.load}), bursts);
   const DramStatistics& counts = result.counts;
-  EXPECT_EQ(counts.row_hits + counts.row_misses + counts.row_conflicts, 50000);
-  if (std::string(figure.pattern) == "rw9010") {
+  EXPECT_EQ(counts.row_hits + counts.row_misses + counts.row_conflicts, 50000 * bursts);
+  if (std::string(figure.pattern) == "rw9010" && figure.policy == DramPolicy::fcfs) {
     // Ramulator's first come, first served keeps writes in a queue of their own; here they are served in
     // their turn, so the data bus changes its direction more often.
-    const double tolerance = figure.policy == DramPolicy::fcfs ? 0.05 : 0.005;
-    EXPECT_NEAR(result.mean_cycles / figure.mean_cycles, 1.0, tolerance);
-    EXPECT_NEAR(static_cast<double>(result.last_read) / static_cast<double>(figure.last_read), 1.0,
-                figure.policy == DramPolicy::fcfs ? 0.02 : 0.0001);
+    EXPECT_NEAR(result.mean_cycles / figure.mean_cycles, 1.0, 0.05);
+    EXPECT_NEAR(static_cast<double>(result.last_read) / static_cast<double>(figure.last_read), 1.0, 0.02);
     return;
   }
   EXPECT_EQ(result.last_read, figure.last_read);
@@ -165,7 +196,7 @@ TEST_P(Reference, AgreesWithRamulator) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Ddr4, Reference, testing::ValuesIn(figures));
+INSTANTIATE_TEST_SUITE_P(Presets, Reference, testing::ValuesIn(figures));
 
 // One access at a time, each `gap` cycles after the data of the last.
 struct Chain {
@@ -207,8 +238,7 @@ TEST(DramReference, IdleAccessesTakeAsLongAsInRamulator) {
       place.row = number;
       return place;
     };
-    // A refresh may come between any two accesses, so a cycle more or less moves a few of them.
-    const double exact = figure.preset == 0 ? 0.001 : 0.01;
+    const double exact = 0.001;
     const auto same_row = [&](std::uint64_t /*i*/) { return row(0); };
     EXPECT_NEAR(run_chain(config, 100, figure.bursts, same_row).mean_cycles / figure.hit, 1.0, exact);
     const auto two_rows = [&](std::uint64_t i) { return row(i % 2); };
@@ -217,59 +247,6 @@ TEST(DramReference, IdleAccessesTakeAsLongAsInRamulator) {
     EXPECT_NEAR(run_chain(config, 100, figure.bursts, two_rows).mean_cycles / figure.empty, 1.0, exact);
   }
 }
-
-struct LoadFigure {
-  std::size_t preset;
-  DramPage page;
-  const char* pattern;
-  double load;
-  double mean_cycles;
-  DramCycle last_read;
-  double tolerance;
-};
-
-constexpr auto load_figures = std::to_array<LoadFigure>({
-    {1, DramPage::open, "rand1G", 0.1, 150.170, 4008381, 0.005},
-    {1, DramPage::open, "rand1G", 0.25, 176.040, 1610801, 0.005},
-    {1, DramPage::open, "rand1G", 0.5, 280.644, 801028, 0.005},
-    {1, DramPage::open, "rw9010", 0.5, 286.450, 801399, 0.005},
-    {1, DramPage::open, "rand1G", 0.0, 0.0, 655661, 0.005},
-    {1, DramPage::open, "seq", 0.0, 0.0, 461070, 0.005},
-    {1, DramPage::closed, "rand1G", 0.1, 121.095, 4008346, 0.005},
-    {1, DramPage::closed, "rand1G", 0.5, 245.144, 801006, 0.005},
-    {1, DramPage::closed, "rand1G", 0.0, 0.0, 655748, 0.005},
-    {2, DramPage::open, "rand1G", 0.1, 74.484, 1000743, 0.005},
-    {2, DramPage::open, "rand1G", 0.25, 89.791, 402307, 0.005},
-    {2, DramPage::open, "rand1G", 0.5, 158.402, 200134, 0.005},
-    {2, DramPage::open, "rw9010", 0.5, 214.228, 200206, 0.02},
-    {2, DramPage::open, "rand1G", 0.0, 0.0, 168211, 0.005},
-    {2, DramPage::open, "seq", 0.0, 0.0, 124053, 0.005},
-    {2, DramPage::closed, "rand1G", 0.1, 61.790, 1000730, 0.005},
-    {2, DramPage::closed, "rand1G", 0.5, 110.575, 200058, 0.005},
-    {2, DramPage::closed, "rw9010", 0.5, 139.605, 200107, 0.02},
-    {2, DramPage::closed, "rand1G", 0.0, 0.0, 130966, 0.005},
-});
-
-class OtherStandards : public testing::TestWithParam<LoadFigure> {};
-
-TEST_P(OtherStandards, AgreeWithRamulator) {
-  const LoadFigure& figure = GetParam();
-  DramConfig config = dram_preset(figure.preset);
-  config.policy = DramPolicy::frfcfs;
-  config.page = figure.page;
-  config.mapping = fields(Mapping::column_first);
-  config.reorder_cap = 0;
-  const std::int64_t bursts = 64 / config.burst_bytes;
-  config.queue = static_cast<std::uint32_t>(32 * bursts);
-  const test::StreamResult result =
-      test::run_stream(config, test::make_stream(config, {figure.pattern, figure.load}), bursts);
-  EXPECT_NEAR(static_cast<double>(result.last_read) / static_cast<double>(figure.last_read), 1.0, 0.005);
-  if (figure.load > 0.0) {
-    EXPECT_NEAR(result.mean_cycles / figure.mean_cycles, 1.0, figure.tolerance);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Ddr5AndHbm2, OtherStandards, testing::ValuesIn(load_figures));
 
 }  // namespace
 }  // namespace marti::memory

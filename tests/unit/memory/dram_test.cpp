@@ -46,6 +46,7 @@ DramTiming random_timing(Random& random) {
   t.wtr_s = random.pick(1, 5);
   t.wtr_l = t.wtr_s + random.pick(0, 5);
   t.rtp = random.pick(1, 8);
+  t.ppd = random.pick(1, 4);
   t.rtw_gap = random.pick(0, 3);
   t.rank_gap = random.pick(0, 3);
   t.rfc = random.pick(20, 60);

@@ -90,15 +90,19 @@ class NaiveDram {
     at_least(same_rank && a.kind == rd && b == wr, t_.cl + t_.bl + t_.rtw_gap - t_.cwl);
     at_least(same_rank && a.kind == wr && b == rd, written + (same_group ? t_.wtr_l : t_.wtr_s));
     at_least(same_rank && a.kind == ref && b == act, t_.rfc);
-    at_least(same_rank && a.kind == pre_all && (b == act || b == ref), t_.rp);
+    at_least(same_rank && a.kind == pre_all && b == act, t_.rp);
+    const bool closes = b == pre || b == pre_all;
+    at_least(same_rank && (a.kind == pre || a.kind == pre_all) && closes, t_.ppd);
+    at_least(same_rank && a.kind == act && b == pre_all, t_.ras);
     if (same_rank && b == ref) {
-      at_least(a.kind == act, std::max(t_.rc, t_.ras + t_.rp));
-      at_least(a.kind == pre, t_.rp);
-      at_least(a.kind == rd, t_.rtp + t_.rp);
-      at_least(a.kind == wr, written + t_.wr + t_.rp);
+      // Times to an activation are counted to its last cycle, but a refresh has one cycle only.
+      const DramCycle later = config_.activate_cycles - 1;
+      at_least(a.kind == act, std::max(t_.rc, t_.ras + t_.rp) + later);
+      at_least(a.kind == pre || a.kind == pre_all, t_.rp + later);
+      at_least(a.kind == rd, t_.rtp + t_.rp + later);
+      at_least(a.kind == wr, written + t_.wr + t_.rp + later);
     }
     if (same_rank && b == pre_all && open_[a.place.bank] >= 0) {
-      at_least(a.kind == act, t_.ras);
       at_least(a.kind == rd, t_.rtp);
       at_least(a.kind == wr, written + t_.wr);
     }
@@ -255,10 +259,7 @@ class NaiveDram {
       burst.state = Burst::queued;
     }
   }
-  bool column_or_row_left(const Burst& burst) const { return allowed(next_of(burst), burst.place); }
-
-  std::size_t serve_queued() {
-    std::size_t ended = 0;
+  void review_writing() {
     const std::size_t writes = queued(true);
     const bool reads = queued(false) > 0;
     if (!writing_ && (5 * writes > 4 * std::size_t{config_.queue} || !reads)) {
@@ -266,11 +267,21 @@ class NaiveDram {
     } else if (writing_ && 5 * writes < config_.queue && reads) {
       writing_ = false;
     }
-    // With two command buses a column command and a row command may share a cycle.
+  }
+
+  std::size_t serve_queued() {
+    std::size_t ended = 0;
+    // With two command buses a cycle has a read or write, and then a command that opens or closes a row.
     for (int bus = 0; bus < (config_.two_command_buses ? 2 : 1); ++bus) {
+      const bool rows = !config_.two_command_buses || bus == 1;
+      const auto can_have = [&](const Burst& burst) {
+        const Kind kind = next_of(burst);
+        const bool has_bus = !config_.two_command_buses || (kind == rd || kind == wr) == (bus == 0);
+        return has_bus && allowed(kind, burst.place);
+      };
       Burst* chosen = nullptr;
       for (Burst& burst : bursts_) {
-        if (burst.state == Burst::active && column_or_row_left(burst)) {
+        if (burst.state == Burst::active && can_have(burst)) {
           chosen = &burst;
           break;
         }
@@ -280,11 +291,12 @@ class NaiveDram {
         continue;
       }
       if (!refreshes_.empty()) {
-        if (!any_active(refreshes_.front())) {
+        if (rows && !any_active(refreshes_.front())) {
           serve_refresh();
         }
         continue;
       }
+      review_writing();
       for (Burst& burst : bursts_) {
         if (burst.state != Burst::queued || burst.write != writing_) {
           continue;
@@ -293,7 +305,7 @@ class NaiveDram {
             next_of(burst) == pre && std::any_of(bursts_.begin(), bursts_.end(), [&](const Burst& b) {
               return b.state == Burst::active && b.place.bank == burst.place.bank;
             });
-        if (!in_use && column_or_row_left(burst)) {
+        if (!in_use && can_have(burst)) {
           chosen = &burst;
           break;
         }
