@@ -7,6 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "scenes/part_error.h"
+
 namespace marti::scenes {
 
 namespace {
@@ -31,6 +33,22 @@ void frame_camera(Scene& scene) {
   scene.camera.at = center;
   const double distance = 1.05 * radius / std::sin(scene.camera.vertical_fov / 2.0);
   scene.camera.eye = center + distance * glm::normalize(glm::dvec3(0.5, 0.4, 1.0));
+}
+
+void apply_view(const ViewOptions& view, Scene& scene) {
+  if (!view.eye && !view.look_at && !view.up && !view.vertical_fov) {
+    return;
+  }
+  Camera& camera = scene.camera;
+  camera.eye = view.eye.value_or(camera.eye);
+  camera.at = view.look_at.value_or(camera.at);
+  camera.up = view.up.value_or(camera.up);
+  camera.vertical_fov = view.vertical_fov.value_or(camera.vertical_fov);
+  try {
+    static_cast<void>(camera.image_plane(1, 1));
+  } catch (const sim::UserError& error) {
+    throw PartError(view.look_at ? "look_at" : view.eye ? "eye" : "up", error.what());
+  }
 }
 
 bool add_default_light(Scene& scene, const FileOptions& options) {

@@ -1,4 +1,4 @@
-// Internal to scenes/: camera and lights of scenes whose file has none.
+// Internal to scenes/: camera and lights of scenes whose file has none, and views of the user's own.
 #pragma once
 
 #include <string_view>
@@ -13,6 +13,10 @@ inline constexpr std::string_view no_camera_note =
 
 /// A camera that sees the whole scene, from a little above on the +z side. The scene has triangles.
 void frame_camera(Scene& scene);
+
+/// Puts what `view` gives in the place of the camera's own. Throws PartError when they do not span a view:
+/// the eye at the point looked at, or up along the line between them.
+void apply_view(const ViewOptions& view, Scene& scene);
 
 /// Adds a directional light over the camera's shoulder and ambient light of at least 0.2, with a note, where
 /// `options` ask for them. Returns whether it did. The scene has its camera and its own lights.

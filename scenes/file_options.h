@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include <glm/vec3.hpp>
 
 #include "scenes/texture.h"
 #include "sim/memory_budget.h"
@@ -15,9 +18,18 @@ namespace marti::scenes {
 enum class DefaultLight : std::uint8_t { automatic, always, never };
 inline constexpr std::array<std::string_view, 3> default_light_names = {"auto", "always", "never"};
 
+/// A view of the user's own: what is given replaces what the scene has.
+struct ViewOptions {
+  std::optional<glm::dvec3> eye;
+  std::optional<glm::dvec3> look_at;
+  std::optional<glm::dvec3> up;
+  std::optional<double> vertical_fov;  ///< full angle in radians, above 0 and below pi
+};
+
 struct FileOptions {
   std::string scene;   ///< index or name; empty: the file's default, else the first
   std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
+  ViewOptions view;    ///< instead of the camera, or of parts of it, in every pose
   /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
   /// pose, unless an animation has that name.
   std::string animation;

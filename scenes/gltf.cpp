@@ -210,8 +210,11 @@ class GltfPoses : public PoseSource {
       place_vertices(pose, first);
       frame_camera(first);
       still_.camera = first.camera;
-      still_.notes.emplace_back(no_camera_note);
+      if (!model_.options().view.eye) {
+        still_.notes.emplace_back(no_camera_note);
+      }
     }
+    apply_view(model_.options().view, still_);
     gltf::add_lights(model_, pose.nodes, still_, left_out);
     has_lights_ = !still_.lights.empty();
     if (add_default_light(still_, model_.options())) {
@@ -252,6 +255,7 @@ class GltfPoses : public PoseSource {
     const std::uint64_t shrunk = place_vertices(pose, scene);
     if (has_camera_) {
       static_cast<void>(gltf::set_camera(model_, pose.nodes, scene));
+      apply_view(model_.options().view, scene);
     }
     if (has_lights_) {
       scene.lights.clear();

@@ -62,6 +62,7 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
   }
   Scene scene = make_procedural(spec, options.file.memory);
   refuse_parts(spec, "a procedural scene", options.file);
+  apply_view(options.file.view, scene);
   add_default_light(scene, options.file);
   return AnimatedScene(std::move(scene));
 }

@@ -10,7 +10,8 @@ namespace marti::scenes {
 /// The fault lies in the choice, not in the scene; the code that made the choice adds its place.
 class PartError : public sim::UserError {
  public:
-  /// The field of FileOptions that holds the choice: "scene", "camera", "animation" or "time".
+  /// The field of FileOptions that holds the choice: "scene", "camera", "animation" or "time", or
+  /// of its view: "eye", "look_at" or "up".
   PartError(std::string part, const std::string& message) : sim::UserError(message), part_(std::move(part)) {}
 
   [[nodiscard]] const std::string& part() const { return part_; }

@@ -111,7 +111,10 @@ void PolygonMesh::finish(const LeftOut& left_out) {
   }
   scene_.name = file_.path().filename().string();
   frame_camera(scene_);
-  scene_.notes.emplace_back(no_camera_note);
+  if (!file_.options().view.eye) {
+    scene_.notes.emplace_back(no_camera_note);
+  }
+  apply_view(file_.options().view, scene_);
   add_default_light(scene_, file_.options());
   note_left_out(left_out, scene_);
   note_bad_positions(bad_, "polygons", scene_);

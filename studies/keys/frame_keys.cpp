@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -78,6 +80,15 @@ void declare_frame_keys(sim::Schema& schema) {
               "relative to the configuration (with --set: to the current directory)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
+  schema.reals("scene.eye", {}, {-1e30, 1e30}, "",
+               "where the eye is, three coordinates; empty: where the camera is, of a file without one, "
+               "where all is seen");
+  schema.reals("scene.look_at", {}, {-1e30, 1e30}, "",
+               "the point in the middle of the image, three coordinates; empty: the camera's");
+  schema.reals("scene.up", {}, {-1e30, 1e30}, "",
+               "the direction that is up, three coordinates; empty: the camera's");
+  schema.real("scene.field_of_view", 0.0, {0.0, 179.9}, "degrees",
+              "angle between the lower and the upper edge of the image; 0: the camera's");
   schema.text("scene.animation", "",
               "animation of the file that plays, by index or name; empty: the first, if there is one; none: "
               "the file's static pose");
@@ -183,6 +194,31 @@ std::filesystem::path directory_of_scene(const sim::Config& config) {
   return of_the_command ? std::filesystem::path() : std::filesystem::path(config.name()).parent_path();
 }
 
+namespace {
+
+std::optional<glm::dvec3> three(const sim::Config& config, std::string_view key) {
+  const std::vector<double> numbers = config.reals(key);
+  if (!numbers.empty() && numbers.size() != 3) {
+    config.fail(key, "must be three coordinates, [x, y, z], not " + std::to_string(numbers.size()));
+  }
+  return numbers.empty() ? std::nullopt : std::optional(glm::dvec3(numbers[0], numbers[1], numbers[2]));
+}
+
+scenes::ViewOptions read_view(const sim::Config& config) {
+  scenes::ViewOptions view{
+      three(config, "scene.eye"), three(config, "scene.look_at"), three(config, "scene.up"), {}};
+  if (const double degrees = config.real("scene.field_of_view"); degrees > 0.0) {
+    constexpr double least = 1e-4;
+    if (degrees < least) {
+      config.fail("scene.field_of_view", "must be at least 0.0001 degrees, or 0 for the camera's");
+    }
+    view.vertical_fov = degrees * std::numbers::pi / 180.0;
+  }
+  return view;
+}
+
+}  // namespace
+
 FrameConfig read_frame(sim::Config& config) {
   FrameConfig frame;
   frame.scene = config.text("scene.source");
@@ -198,6 +234,7 @@ FrameConfig read_frame(sim::Config& config) {
   }
   frame.open.file.scene = config.text("scene.scene");
   frame.open.file.camera = config.text("scene.camera");
+  frame.open.file.view = read_view(config);
   frame.open.file.animation = config.text("scene.animation");
   frame.open.file.default_light = config.choice_as<scenes::DefaultLight>("scene.default_light");
   frame.open.file.strict = config.boolean("scene.strict");

@@ -33,6 +33,8 @@ inline const std::vector<WrongConfiguration>& wrong_configurations() {
       {"[cache]\nsiz = \"16 KiB\"\n", {"wrong.toml:2", "cache.siz", "cache.size"}},
       {"[cache]\nsize = \"17 B\"\n", {"wrong.toml:2", "cache.size", "line"}},
       {"[cache]\nsize = true\n", {"wrong.toml:2", "cache.size"}},
+      {"[scene]\neye = [1.0, 2.0]\n", {"wrong.toml:2", "scene.eye", "three coordinates"}},
+      {"[scene]\nfield_of_view = 180.0\n", {"wrong.toml:2", "scene.field_of_view"}},
       {"[machine]\nscheme = \"pipeline\"\nnodes = 2\n", {"wrong.toml:3", "machine.nodes", "at least 3"}},
       {"[machine]\nscheme = \"pipeline\"\n[pipeline]\nsearch = 3\n",
        {"pipeline.nearest", "all three stages"}},

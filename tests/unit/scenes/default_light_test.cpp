@@ -1,12 +1,14 @@
-// Which scenes get a light that is not in them.
+// Which scenes get a light that is not in them, and views that are not in them.
 #include <string>
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "gltf_file.h"
 #include "loaded_scene.h"
 #include "processors/program/path_sampling.h"
 #include "scenes/gltf_export.h"
+#include "scenes/part_error.h"
 #include "scenes/procedural.h"
 #include "text_scene.h"
 
@@ -92,6 +94,66 @@ TEST(DefaultLight, IsInEveryPose) {
   ASSERT_EQ(last.lights.size(), 2U);
   EXPECT_NE(first.lights[0].position, last.lights[0].position);
   EXPECT_EQ(first.lights[1].direction, last.lights[1].direction);
+}
+
+// Whatever the file, in each pose of it; what is not given stays as it is.
+TEST(View, ReplacesTheCameraOfEveryKindOfScene) {
+  const testing::SceneFolder folder;
+  testing::GltfFile moving = testing::GltfFile::square();
+  const int times = moving.add_accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
+  const int moves = moving.add_accessor(std::vector<float>{0, 0, 5, 1, 0, 9}, 5126, "VEC3", 3);
+  moving.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+  moving.json["nodes"].push_back({{"camera", 0}});
+  moving.json["scenes"][0]["nodes"].push_back(moving.json["nodes"].size() - 1);
+  moving.json["animations"] = {
+      {{"channels",
+        {{{"sampler", 0}, {"target", {{"node", moving.json["nodes"].size() - 1}, {"path", "translation"}}}}}},
+       {"samplers", {{{"input", times}, {"output", moves}}}}}};
+  const auto glb = folder.write("moving.glb", moving.glb());
+  const auto obj = folder.write("a.obj", square(false, false, true));
+  folder.write("a.mtl", "newmtl m\n");
+  const auto still = folder.write("teapot.glb", "");
+  export_glb(make_procedural("tetra:2"), still);
+  for (const std::string& spec : {std::string("tetra:2"), still.string(), glb.string(), obj.string()}) {
+    for (const double time : {0.0, 1.0}) {
+      OpenOptions options;
+      options.file.time = spec == glb.string() ? time : 0.0;
+      const Camera own = open_scene(spec, options, {}).camera;
+      options.file.view = {glm::dvec3(1.0, 2.0, 3.0), {}, {}, 0.25};
+      const Scene part = open_scene(spec, options, {});
+      EXPECT_EQ(part.camera.eye, glm::dvec3(1.0, 2.0, 3.0)) << spec;
+      EXPECT_EQ(part.camera.at, own.at) << spec;
+      EXPECT_EQ(part.camera.up, own.up) << spec;
+      EXPECT_EQ(part.camera.vertical_fov, 0.25) << spec;
+      EXPECT_FALSE(has_note(part, "no perspective camera")) << spec;
+      options.file.view.look_at = glm::dvec3(4.0, 2.0, 3.0);
+      options.file.view.up = glm::dvec3(0.0, 0.0, 1.0);
+      const Scene whole = open_scene(spec, options, {});
+      EXPECT_EQ(whole.camera.at, glm::dvec3(4.0, 2.0, 3.0)) << spec;
+      EXPECT_EQ(whole.camera.up, glm::dvec3(0.0, 0.0, 1.0)) << spec;
+      options.file.view.up = glm::dvec3(-2.0, 0.0, 0.0);
+      try {
+        (void)open_scene(spec, options, {});
+        ADD_FAILURE() << spec << ": up lies along the line of sight";
+      } catch (const PartError& error) {
+        EXPECT_EQ(error.part(), "look_at");
+      }
+    }
+  }
+}
+
+// The default light comes over the shoulder of who looks.
+TEST(View, TurnsTheDefaultLight) {
+  OpenOptions options;
+  options.file.default_light = DefaultLight::always;
+  const Scene own = open_scene("tetra:2", options, {});
+  options.file.view.eye = own.camera.at + (own.camera.at - own.camera.eye);
+  const Scene behind = open_scene("tetra:2", options, {});
+  const auto along = [](const Scene& scene) {
+    return glm::dot(scene.lights.back().direction, scene.camera.at - scene.camera.eye);
+  };
+  EXPECT_GT(along(own), 0.0);
+  EXPECT_DOUBLE_EQ(along(own), along(behind));
 }
 
 }  // namespace
