@@ -29,7 +29,7 @@ fs::path page_of(const std::string& results) {
   const std::optional<tables::PointName> point =
       fs::is_directory(results, ignored) ? std::nullopt : tables::point_named(results);
   return point ? tables::directory_of(point->store) / ("point-" + std::to_string(point->ordinal) + ".html")
-               : fs::path(results) / "report.html";
+               : fs::path(results) / tables::report_page_name;
 }
 
 void check_apart(const fs::path& file, const fs::path& directory, std::span<const Plot> plots) {
@@ -47,7 +47,7 @@ std::vector<fs::path> write_all(const fs::path& file, const std::string& page, c
                                 std::span<const Plot> plots) {
   const host::SignalsHeld held;
   tables::PendingFiles pending_page(tables::directory_of(file));
-  pending_page.write(file.filename().string(), page);
+  pending_page.write(file.filename().string(), tables::sealed(page));
   const sim::MadeDirectory made = directory.empty() ? sim::MadeDirectory() : sim::MadeDirectory(directory);
   tables::PendingFiles pending_plots(directory);
   for (const Plot& plot : plots) {

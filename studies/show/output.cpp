@@ -5,6 +5,8 @@
 #include <map>
 
 #include "sim/descriptor.h"
+#include "sim/error.h"
+#include "sim/files.h"
 #include "sim/pending_file.h"
 #include "sim/sha256.h"
 #include "studies/host/image_file.h"
@@ -14,6 +16,7 @@
 #include "studies/show/result_parts.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
+#include "studies/tables/page_file.h"
 #include "studies/tables/pending_files.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_files.h"
@@ -49,6 +52,15 @@ void add_files(const run::RunResult& result, tables::PendingFiles& files) {
   }
 }
 
+// Whether an earlier run has written this result: then a page that was made of it still tells the truth.
+bool is_result(const std::filesystem::path& file, const std::string& json) {
+  try {
+    return sim::read_file(file, static_cast<std::int64_t>(json.size())) == json;
+  } catch (const sim::UserError&) {
+    return false;  // there is none, or a longer one
+  }
+}
+
 }  // namespace
 
 sim::MadeDirectory prepare_output(const std::filesystem::path& directory) {
@@ -75,6 +87,7 @@ WrittenRun write_output(const run::RunResult& result, const std::filesystem::pat
     hashes[timeline_name] = sim::sha256_of_file(result.timeline->temporary());
   }
   WrittenRun written{{}, json_of(result, hashes)};
+  const bool same = is_result(directory / tables::run_name, written.json);
   files.write(tables::run_name, written.json);
   if (result.timeline) {
     result.timeline->commit();
@@ -82,6 +95,9 @@ WrittenRun write_output(const run::RunResult& result, const std::filesystem::pat
   written.files = files.commit();
   if (result.timeline) {
     written.files.push_back(directory / timeline_name);
+  }
+  if (!same) {
+    tables::remove_sealed_page(directory / tables::report_page_name);
   }
   for (const auto& [name, hash] : earlier) {
     if (!hashes.contains(name)) {

@@ -1,11 +1,15 @@
 #include "studies/tables/page_file.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "sim/error.h"
+#include "sim/files.h"
+#include "sim/sha256.h"
 #include "studies/host/signals_held.h"
 #include "studies/tables/pending_files.h"
 
@@ -14,6 +18,10 @@ namespace marti::studies::tables {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::string_view seal_begin = "<!-- marti: SHA-256 of all above this line ";
+constexpr std::string_view seal_end = " -->\n";
+constexpr std::size_t hash_digits = 64;
 
 bool is_page(const fs::path& file) {
   constexpr std::string_view begin = "<!doctype html";
@@ -48,6 +56,28 @@ void check_page_target(const fs::path& file) {
         file.string() +
         ": exists and is not an HTML page, so it is not replaced by a page; choose another name with -o, "
         "or remove it");
+  }
+}
+
+std::string sealed(std::string html) {
+  const std::string hash = sim::sha256_text(html);
+  return std::move(html) + std::string(seal_begin) + hash + std::string(seal_end);
+}
+
+void remove_sealed_page(const fs::path& file) {
+  constexpr std::int64_t most_bytes = std::int64_t{256} << 20U;
+  constexpr std::size_t length = seal_begin.size() + hash_digits + seal_end.size();
+  std::error_code error;
+  if (fs::symlink_status(file, error).type() != fs::file_type::regular) {
+    return;
+  }
+  try {
+    const std::string text = sim::read_file(file, most_bytes);
+    if (text.size() >= length && sealed(text.substr(0, text.size() - length)) == text) {
+      fs::remove(file, error);  // what cannot be removed stays
+    }
+  } catch (const sim::UserError&) {
+    // It cannot be read, or is longer than a page.
   }
 }
 

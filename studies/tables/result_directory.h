@@ -16,6 +16,8 @@ inline constexpr const char* run_name = "result.json";
 inline constexpr const char* database_name = "results.sqlite";
 /// The file that names the traces of `marti trace` beside it, and the machine that they are of.
 inline constexpr const char* trace_name = "trace.json";
+/// The page of `marti report`, if no other name is asked for.
+inline constexpr const char* report_page_name = "report.html";
 
 /// Whether a file or a link of this name exists, even a link to nothing. UserError when that cannot be told.
 [[nodiscard]] bool is_there(const std::filesystem::path& file);

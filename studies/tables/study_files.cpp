@@ -9,6 +9,7 @@
 #include "studies/host/signals_held.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
+#include "studies/tables/page_file.h"
 #include "studies/tables/pending_files.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/sqlite.h"
@@ -41,7 +42,9 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
   }
   all.push_back(columns);
   write_database(files.add(database_name), all);
-  return files.commit_set();
+  std::vector<fs::path> written = files.commit_set();
+  remove_sealed_page(directory / report_page_name);  // of the results that were there before
+  return written;
 }
 
 void refuse_store_of_sweep(const fs::path& directory) {

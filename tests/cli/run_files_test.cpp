@@ -89,5 +89,24 @@ TEST(RunFiles, AreASet) {
   EXPECT_EQ(names_in(out).size(), 7U);
 }
 
+// A page of one machine does not stay beside the results of another, unless somebody has changed it.
+TEST(RunFiles, APageOfAnotherRunGoesWithIt) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  const fs::path page = out / "report.html";
+  const std::string run = "run --no-what-helps " + small_run + " -o " + quoted(out) + " --set machine.nodes=";
+  const auto report = [&] { ASSERT_EQ(marti("report " + quoted(out)).status, 0); };
+  ASSERT_EQ(marti(run + "2").status, 0);
+  report();
+  ASSERT_EQ(marti(run + "2").status, 0);
+  EXPECT_TRUE(fs::exists(page)) << "it is of this machine";
+  ASSERT_EQ(marti(run + "3").status, 0);
+  EXPECT_FALSE(fs::exists(page));
+  report();
+  write(page, read(page) + "my notes\n");
+  ASSERT_EQ(marti(run + "2").status, 0);
+  EXPECT_TRUE(fs::exists(page)) << "it is the user's now";
+}
+
 }  // namespace
 }  // namespace marti::test
