@@ -24,12 +24,13 @@ bool has_emitters(const Scene& scene) {
 
 }  // namespace
 
-void frame_camera(Scene& scene) {
+void frame_camera(const ViewOptions& view, Scene& scene) {
   const Bounds bounds = bounds_of(scene);
   const glm::dvec3 center = bounds.lo + (bounds.hi - bounds.lo) * 0.5;
   const double half_diagonal = glm::length(bounds.hi - bounds.lo) * 0.5;
   const double radius = half_diagonal > 0.0 ? half_diagonal : std::max(1.0, glm::length(center)) * 0.5;
   scene.camera = Camera{};
+  scene.camera.vertical_fov = view.vertical_fov.value_or(scene.camera.vertical_fov);
   scene.camera.at = center;
   const double distance = 1.05 * radius / std::sin(scene.camera.vertical_fov / 2.0);
   scene.camera.eye = center + distance * glm::normalize(glm::dvec3(0.5, 0.4, 1.0));

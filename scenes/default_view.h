@@ -11,8 +11,9 @@ namespace marti::scenes {
 inline constexpr std::string_view no_camera_note =
     "The scene has no perspective camera; it is seen by one that frames it.";
 
-/// A camera that sees the whole scene, from a little above on the +z side. The scene has triangles.
-void frame_camera(Scene& scene);
+/// A camera that sees the whole scene, from a little above on the +z side, with the field of view that `view`
+/// asks for. The scene has triangles.
+void frame_camera(const ViewOptions& view, Scene& scene);
 
 /// Puts what `view` gives in the place of the camera's own. Throws PartError when they do not span a view:
 /// the eye at the point looked at, or up along the line between them.

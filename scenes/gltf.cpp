@@ -208,7 +208,7 @@ class GltfPoses : public PoseSource {
     if (!has_camera_) {
       Scene first = still_;
       place_vertices(pose, first);
-      frame_camera(first);
+      frame_camera(model_.options().view, first);
       still_.camera = first.camera;
       if (!model_.options().view.eye) {
         still_.notes.emplace_back(no_camera_note);

@@ -110,7 +110,7 @@ void PolygonMesh::finish(const LeftOut& left_out) {
                         : "the scene has no triangles");
   }
   scene_.name = file_.path().filename().string();
-  frame_camera(scene_);
+  frame_camera(file_.options().view, scene_);
   if (!file_.options().view.eye) {
     scene_.notes.emplace_back(no_camera_note);
   }

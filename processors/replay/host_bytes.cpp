@@ -74,7 +74,9 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
   }
   constexpr std::uint64_t bytes_a_context = sizeof(walk::Cursor) + 64 + sim::EventQueue::bytes_an_event;
   constexpr std::uint64_t bytes_a_port = 80;
-  const std::uint64_t contexts = machine.ports_of_node() == 1 ? 0  // nodes without what several contexts need
+  // Nodes that are configured with several contexts keep these tables even where only one of each gets a
+  // packet.
+  const std::uint64_t contexts = machine.ports_of_node() == 1 ? 0
                                                               : config.contexts * bytes_a_context +
                                                                     config.ports_of_node() * bytes_a_port;
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.

@@ -10,7 +10,6 @@
 #include "scenes/open.h"
 #include "sim/config.h"
 #include "sim/error.h"
-#include "sim/files.h"
 #include "sim/nearest.h"
 #include "studies/explore/modelled_frame.h"
 #include "studies/figures/derived_figures.h"

@@ -16,7 +16,8 @@ using processors::machine::SecondLevel;
 
 // More ways than this cost more than they bring (Hill and Smith 1989).
 constexpr std::int64_t most_ways = 64;
-// Guesses of Resource::factor: twice the size of a cache leaves about six tenths of its misses where it is small.
+// Guesses of Resource::factor: twice the size of a cache leaves about six tenths of its misses where it is
+// small.
 constexpr double twice_the_size = 1.7;
 constexpr double more_of_the_ways = 1.1;
 constexpr double another_line = 1.2;
@@ -164,12 +165,10 @@ void add_queues(const Changer& changer, const MachineConfig& machine, std::vecto
   resources.push_back(more(changer, Part::queues, section + "queue"));
   // With 0 there are as many in flight as the queues allow.
   if ((pipeline ? machine.pipeline.in_flight : machine.space.in_flight) > 0) {
-    Resource rays = more(changer, Part::queues, section + "in_flight");
-    if (pipeline) {
-      rays = more(changer, Part::queues, "pipeline.in_flight",
-                  processors::machine::most_in_flight(machine.pipeline));
-    }
-    resources.push_back(std::move(rays));
+    resources.push_back(
+        more(changer, Part::queues, section + "in_flight",
+             pipeline ? std::optional(next_power(processors::machine::most_in_flight(machine.pipeline)) / 2)
+                      : std::nullopt));
   }
 }
 

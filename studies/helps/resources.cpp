@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,7 +28,7 @@ Resource faster_clock(const Changer& changer, Part part, std::string_view key) {
   const auto now = std::get<double>(changer.now(key));
   const sim::Ticks period = sim::Clock::from_hertz(now).period();
   const double fastest = std::get<double>(*changer.key(key).maximum);
-  double faster = std::min(fastest, std::round(now * 11.0 / 10.0));
+  double faster = std::min(fastest, std::max(std::round(now * 11.0 / 10.0), std::floor(now) + 1.0));
   if (sim::Clock::from_hertz(faster).period() == period && period > 1) {
     faster = std::round(static_cast<double>(sim::ticks_per_second) / static_cast<double>(period - 1));
   }
@@ -45,12 +44,11 @@ Resource more(const Changer& changer, Part part, std::string_view key, std::opti
   const std::int64_t now = whole(changer, key);
   const auto most = std::get<std::int64_t>(*changer.key(key).maximum);
   constexpr std::int64_t far = 8;
-  const std::int64_t end = useful ? next_power(*useful) / 2 : now <= most / far ? now * far : most;
+  const std::int64_t end = useful ? next_power(*useful - 1) : now <= most / far ? now * far : most;
   const std::int64_t best = std::min(end, most);
   const std::int64_t next = std::min(next_power(now), std::max(best, now));
   return {std::string(key), part, changer.with({{key, next}}),
-          best > next ? changer.with({{key, best}}) : std::nullopt,
-          ratio(next, std::max<std::int64_t>(now, 1))};
+          best > next ? changer.with({{key, best}}) : std::nullopt, now > 0 ? ratio(next, now) : 2.0};
 }
 
 Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least) {
@@ -82,8 +80,8 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   const bool image = machine.scheme == Scheme::image;
   // More nodes than packets have nothing to do. Nodes beside which rays move are of use without such a limit.
   const auto packets = static_cast<std::int64_t>(facts.packets / machine.clusters);
-  Resource nodes = more(changer, Part::nodes, "machine.nodes",
-                        std::min<std::int64_t>(packets, processors::machine::most_nodes / machine.clusters));
+  const std::int64_t most = processors::machine::most_nodes / machine.clusters;
+  Resource nodes = more(changer, Part::nodes, "machine.nodes", image ? std::min(packets, most) : most);
   if (!image) {
     nodes.best.reset();
   }

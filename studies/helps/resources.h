@@ -51,12 +51,11 @@ struct Resource {
 
 /// A clock: a tenth faster, or at periods of a few ticks the next shorter one.
 [[nodiscard]] Resource faster_clock(const Changer& changer, Part part, std::string_view key);
-/// A number of things or bytes: the next power of two; at best the greatest power of two up to `useful`,
+/// A number of things or bytes: the next power of two; at best the least power of two from `useful` on,
 /// beyond which nothing is gained, and without it eight times as many.
 [[nodiscard]] Resource more(const Changer& changer, Part part, std::string_view key,
                             std::optional<std::int64_t> useful = std::nullopt);
-/// A number of cycles or bytes that is to be small: divided by 1.1, by at least one
-/// less; at best `least`.
+/// A number of cycles or bytes that is to be small: divided by 1.1, and at least one less; at best `least`.
 [[nodiscard]] Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least = 0);
 
 /// Those of the machine's first- and second-level caches. `database_bytes`: of one copy of the database. At

@@ -50,8 +50,8 @@ namespace marti::studies::show {
 [[nodiscard]] nlohmann::ordered_json helps_json(const run::RunResult& result);
 [[nodiscard]] std::string helps_lines(const run::RunResult& result);
 
-/// Settings that nobody gave and that may not be what was meant: clocks that are left at their default beside given
-/// ones that are more than four times as fast. Empty without any.
+/// Settings that nobody gave and that may not be what was meant: clocks that are left at their default beside
+/// given ones that are more than four times as fast. Empty without any.
 [[nodiscard]] nlohmann::ordered_json notes_json(const run::RunResult& result);
 [[nodiscard]] std::string note_lines(const run::RunResult& result);
 

@@ -281,7 +281,8 @@ CaseOutcome caches(const Subject& subject) {
     return machine;
   };
   const std::uint32_t line = base.cache.cache.line;
-  // Every address of the database, the gaps before its sections included: then no two lines of it share a set.
+  // Every address of the database, the gaps before its sections included: then no two lines of it share a
+  // set.
   const std::uint64_t all =
       std::bit_ceil(replay_all(subject, base).database_bytes + line +
                     memory::record_kinds * std::uint64_t{base.layout.section_alignment});
@@ -303,7 +304,8 @@ CaseOutcome caches(const Subject& subject) {
                                            {all, line, memory::full_ways},
                                            {all, line, 1}}) {
     const bool everything = cache.size == all;
-    trials.push_back({fmt::format("{} bytes in {} ways", cache.size, cache.ways), with(cache), [=](const MachineResult& result) {
+    trials.push_back({fmt::format("{} bytes in {} ways", cache.size, cache.ways), with(cache),
+                      [=](const MachineResult& result) {
                         const processors::cost::ReferenceCounts counts = result.references();
                         return steps(result) &&
                                (!comparable || (counts.references() == least.references() &&

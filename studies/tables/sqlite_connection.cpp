@@ -39,7 +39,7 @@ bool may_be_changed(const std::filesystem::path& place) {
 }  // namespace
 
 SqliteConnection::SqliteConnection(const std::filesystem::path& file, Access access)
-    : name_(file.string()), writes_(access != Access::read) {
+    : name_(file.string()), writes_(access != Access::read), in_memory_(access == Access::memory) {
   int flags = SQLite::OPEN_NOMUTEX | SQLite::OPEN_READWRITE;
   std::string place = access == Access::memory ? ":memory:" : name_;
   if (writes_) {
@@ -61,8 +61,11 @@ void SqliteConnection::fail(const SQLite::Exception& error) const {
   if (kind == SQLITE_NOMEM) {
     throw std::bad_alloc();
   }
-  std::string message =
-      name_ + ": the database cannot be " + (writes_ ? "written: " : "read: ") + error.what();
+  std::string message = name_ +
+                        (in_memory_ ? ": has a part of another form than a result's: "
+                         : writes_  ? ": the database cannot be written: "
+                                    : ": the database cannot be read: ") +
+                        error.what();
   if (kind == SQLITE_IOERR || kind == SQLITE_CANTOPEN) {
     // A database that could not be opened has no connection to ask for the reason; then SQLite has not
     // changed errno since the system set it.

@@ -58,6 +58,7 @@ class SqliteConnection {
 
   std::string name_;
   bool writes_;
+  bool in_memory_;
   bool cannot_recover_ = false;             // a journal or log lies beside the file and cannot be applied
   std::optional<SQLite::Database> opened_;  // empty only while it is being opened
 };

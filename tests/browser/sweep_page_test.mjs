@@ -304,7 +304,7 @@ describe("the address", () => {
         assert.deepEqual([actual.ordinals, actual.current], [[], []], "nothing has that text");
         assert.deepEqual({ ...actual, ordinals: expected.ordinals, current: expected.current }, expected);
       },
-      { fragment: "#along=nobody&colour=__proto__&point=1e99&axis.point=x&budget=-1&sort=-none&filter=<img src=x onerror=alert(1)>" },
+      { fragment: "#along=nobody&colour=__proto__&figure=constructor&point=1e99&axis.point=x&budget=-1&sort=-none&filter=<img src=x onerror=alert(1)>" },
     ));
 });
 

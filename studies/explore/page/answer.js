@@ -29,6 +29,9 @@ explore.answer = (() => {
   }
 
   /** Bars of the figures whose names begin with `prefix`; those of 0 are left out. */
+  // The share "idle" has the time of all nodes that wait for the last one; this loss is another figure.
+  const named = (name, prefix) => (name === "lost_idle" ? "no work at all" : name.slice(prefix.length).replaceAll("_", " "));
+
   function bars(id, figures, prefix, whole) {
     const rows = Object.entries(figures).filter(([name, value]) => name.startsWith(prefix) && Math.abs(value) > 1e-12);
     rows.sort(([, a], [, b]) => b - a);
@@ -38,7 +41,7 @@ explore.answer = (() => {
     rows.forEach(([name, value], i) => {
       const width = Math.max(1, Math.min(1, Math.abs(value) / whole) * 240);
       chart.append(
-        drawn("text", { x: 0, y: i * height + 15 }, name.slice(prefix.length).replaceAll("_", " ")),
+        drawn("text", { x: 0, y: i * height + 15 }, named(name, prefix)),
         drawn("rect", { x: 150, y: i * height + 3, width, height: height - 6, "data-figure": name, "data-value": value }),
         drawn("text", { x: 156 + width, y: i * height + 15 }, shown(name, value)),
       );

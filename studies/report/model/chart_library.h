@@ -1,23 +1,24 @@
 // The charts and tables of reports: files in studies/report/model/charts, built into the program. A chart is
 // a Vega-Lite specification (*.vl.json); a table (*.table.json) describes its columns instead. Their
 // "usermeta" says of which results they are, and what they show:
-//   of       "run" or "sweep"; a file without it is filled by code
-//   charts   a list of what follows, where one file draws several charts
-//   order    of the charts of one page, and of its tables, ascending
-//   name     lower-case letters, digits and '_'; by default the file's
-//   title    one line
-//   note     what to look at, in a sentence or two; may be left out
-//   sql      the query that makes the rows, as a list of lines (result_tables.h); without rows it is left out
-//   live     of a sweep, instead of sql: {"rows": KIND, ...}, how plots/explorer_rows.js makes the rows,
-//   where
-//              "fields" or "by" name the figures that it needs; without any of them it is left out
-//   along    of a sweep: prefixes of keys; a chart for each axis that has one, instead of one that follows
-//   the
-//              reader
-//   words    of a sweep: words of the file and what stands in their place; PRICE is what machines are paid in
-//   ideal    of a sweep: false if it has no line of the ideal speed-up
-//   columns  of a table: name, type ("integer", "real" or "text"), unit and description of each
-//   folded   of a table: whether it is shown on demand only
+//
+// - of: "run" or "sweep"; a file without it is filled by code
+// - charts: a list of what follows, where one file draws several charts
+// - order: of the charts of one page, and of its tables, ascending
+// - name: lower-case letters, digits and '_'; by default the file's
+// - title: one line
+// - note: what to look at, in a sentence or two; may be left out
+// - sql: the query that makes the rows, as a list of lines (result_tables.h); without rows the chart is left
+// out
+// - live: of a sweep, instead of sql: how plots/explorer_rows.js makes the rows; its "fields" or "by" name
+// the
+//   figures that it needs, and without any of them the chart is left out
+// - along: of a sweep: prefixes of keys; a chart for each axis that has one, instead of one for the reader's
+// axis
+// - words: of a sweep: words of the file and what stands in their place; PRICE is what machines are paid in
+// - ideal: of a sweep: false if it has no line of the ideal speed-up
+// - columns: of a table: name, type ("integer", "real" or "text"), unit and description of each
+// - folded: of a table: whether it is shown on demand only
 #pragma once
 
 #include <span>

@@ -9,8 +9,8 @@
 
 namespace marti::studies::report {
 
-/// See docs/report.md. `axis`: the one that charts run along at first; std::nullopt for a sweep of one
-/// machine.
+/// See docs/internals/pages.md. `axis`: the one that charts run along at first; std::nullopt for a sweep of
+/// one machine.
 [[nodiscard]] nlohmann::ordered_json explorer_json(const ReportPoints& sweep, const Chosen& chosen,
                                                    std::optional<std::size_t> axis);
 

@@ -1,5 +1,6 @@
 #include "studies/report/model/result_tables.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
@@ -23,7 +24,7 @@ CREATE TABLE figures(part TEXT, name TEXT, value, text TEXT);
 CREATE TABLE settings(key TEXT PRIMARY KEY, value);
 CREATE TABLE activities(position INTEGER, name TEXT, kind TEXT);
 CREATE TABLE records(position INTEGER, name TEXT);
-CREATE TABLE losses(position INTEGER, name TEXT);
+CREATE TABLE losses(position INTEGER, name TEXT, text TEXT);
 CREATE TABLE energy_parts(position INTEGER, name TEXT);
 
 CREATE VIEW levels AS
@@ -55,7 +56,8 @@ SELECT what, bucket.value ->> 1 AS highest_ps, bucket.value ->> 2 AS count
 FROM histograms, json_each(buckets) AS bucket;
 )sql";
 
-constexpr std::string_view kind_names[] = {"computing", "memory", "queueing", "delay", "idle"};
+constexpr std::array<std::string_view, 5> kind_names = {"computing", "memory", "queueing", "delay", "idle"};
+static_assert(static_cast<std::size_t>(processors::cost::ActivityKind::idle) + 1 == kind_names.size());
 
 void insert_names(tables::SqliteConnection& connection, const std::string& table,
                   std::span<const std::string_view> names) {
@@ -90,10 +92,13 @@ ResultTables::ResultTables(const tables::RunJson& run)
     tables::SqliteStatement activity(connection_, tables::insert_sql("activities", 3));
     for (std::size_t i = 0; i < processors::cost::activities; ++i) {
       activity.run({i, processors::cost::activity_names[i],
-                    kind_names[static_cast<std::size_t>(processors::cost::activity_kinds[i])]});
+                    kind_names.at(static_cast<std::size_t>(processors::cost::activity_kinds[i]))});
     }
     insert_names(connection_, "records", memory::record_kind_names);
-    insert_names(connection_, "losses", figures::loss_names);
+    tables::SqliteStatement loss(connection_, tables::insert_sql("losses", 3));
+    for (std::size_t i = 0; i < figures::loss_names.size(); ++i) {
+      loss.run({i, figures::loss_names.at(i), figures::loss_text(figures::loss_names.at(i))});
+    }
     const auto energies = sim::mapped(processors::energy::EnergyResult::counters(),
                                       [](const auto& counter) { return std::string_view(counter.name); });
     insert_names(connection_, "energy_parts", std::span(energies).first(processors::energy::energy_parts));

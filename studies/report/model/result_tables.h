@@ -9,20 +9,22 @@
 
 namespace marti::studies::report {
 
-/// A database in memory with
-///   result(json)                                the whole result.json, one row
-///   figures(part, name, value, text)            part: "frame" or "machine"; text: the value as in
-///   result.json settings(key, value)                        in the units of result.json activities(position,
-///   name, kind)            kind: "computing", "memory", "queueing", "delay" or "idle" records, losses,
-///   energy_parts(position, name)  kinds of record, parts of the lost speed-up, of the energy
-/// and the views
-///   levels(level, branches, leaves, empty_leaves, entries)   of the structure, from 1, the root
-///   level_references(level, record, references, misses)      of counting caches
-///   node_times(node, activity, kind, ps)
-///   waits(what, highest_ps, count)              buckets of histograms; what: "interconnect", "bank",
-///   "network"
+/// A database in memory with these tables and views:
+///
+/// - result(json): the whole result.json, in one row
+/// - figures(part, name, value, text): part is "frame" or "machine", text the value as it stands in
+/// result.json
+/// - settings(key, value): in the units of result.json
+/// - activities(position, name, kind): kind is "computing", "memory", "queueing", "delay" or "idle"
+/// - losses(position, name, text): parts of the lost speed-up, with their names for people
+/// - records(position, name) and energy_parts(position, name): kinds of record, parts of the energy
+/// - levels(level, branches, leaves, empty_leaves, entries): of the structure, from 1, the root
+/// - level_references(level, record, references, misses): of counting caches
+/// - node_times(node, activity, kind, ps)
+/// - waits(what, highest_ps, count): buckets of histograms; what is "interconnect", "bank" or "network"
+///
 /// Times are in ps, energies in fJ. A table lacks what the result lacks. Throws UserError, naming the file,
-/// for a query whose numbers do not fit.
+/// for a result whose parts have another form, and for a query whose numbers do not fit.
 class ResultTables {
  public:
   explicit ResultTables(const tables::RunJson& run);

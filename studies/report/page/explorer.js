@@ -164,7 +164,7 @@ marti.explorer = (() => {
     if (state.axis === null) return;
     state.axis = axisNamed(named.along, first.axis);
     state.colour = named.colour === "none" ? null : axisNamed(named.colour, first.colour);
-    state.figure = explorer.columns[named.figure] ? named.figure : first.figure;
+    state.figure = explorer.fields.some(({ name }) => name === named.figure) ? named.figure : first.figure;
     state.budget = named.budget === "none" ? null : marti.budgetOf(named.budget) ?? first.budget;
     state.place = axes.map((axis, a) => {
       const at = axis.texts.indexOf(named[`axis.${axis.name}`]);

@@ -72,7 +72,8 @@ AxisEffect effect_of(const AxisColumn& axis, const std::vector<double>& parts) {
   const auto text = [&](auto at) {
     return axis_text(axis.name, axis.values[static_cast<std::size_t>(at - parts.begin())]);
   };
-  return {sim::joined(names, " + "), text(least), text(most), std::exp(*least - mean), std::exp(*most - mean)};
+  return {sim::joined(names, " + "), text(least), text(most), std::exp(*least - mean),
+          std::exp(*most - mean)};
 }
 
 Interaction interaction_of(const AxisColumn& a, const AxisColumn& b, std::span<const double> left) {
@@ -104,6 +105,10 @@ AxisEffects axis_effects(std::span<const AxisColumn> axes, std::span<const doubl
   }
   for (std::size_t a = 0; a < axes.size(); ++a) {
     for (std::size_t b = a + 1; b < axes.size(); ++b) {
+      // With more combinations than points most have one point, which tells nothing of the two axes.
+      if (axes[a].values.size() * axes[b].values.size() > times.size()) {
+        continue;
+      }
       if (const Interaction both = interaction_of(axes[a], axes[b], left); both.ratio > least) {
         effects.interactions.push_back(both);
       }

@@ -6,7 +6,6 @@
 // value is the geometric mean of its points by that of all.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,8 +43,8 @@ struct AxisEffects {
 /// Of the points that were timed.
 [[nodiscard]] AxisEffects axis_effects(const SweepReader& reader);
 
-/// "machine.nodes 12.8 times, cache.size 1.40 times; machine.nodes with cache.size 1.1 times", without a full
-/// stop; empty without axes.
+/// "machine.nodes 12.80 times, cache.size 1.40 times; machine.nodes and cache.size together 1.10 times",
+/// without a full stop; empty without axes.
 [[nodiscard]] std::string effects_text(const AxisEffects& effects);
 
 }  // namespace marti::studies::sweep

@@ -1,6 +1,7 @@
 #include "studies/sweep/store/axis_order.h"
 
 #include <algorithm>
+#include <map>
 
 #include "studies/tables/cell_number.h"
 
@@ -25,15 +26,18 @@ AxisColumn column_of(const std::string& name, std::size_t at,
                      std::span<const std::vector<tables::Cell>> points) {
   AxisColumn column;
   column.name = name;
+  std::map<tables::CellValue, std::size_t> places;
   for (const std::vector<tables::Cell>& point : points) {
-    if (std::ranges::find(column.values, point[at]) == column.values.end()) {
+    if (places.emplace(point[at], 0).second) {
       column.values.push_back(point[at]);
     }
   }
   std::ranges::stable_sort(column.values, before);
+  for (std::size_t place = 0; place < column.values.size(); ++place) {
+    places[column.values[place]] = place;
+  }
   for (const std::vector<tables::Cell>& point : points) {
-    const auto found = std::ranges::find(column.values, point[at]);
-    column.index.push_back(static_cast<std::size_t>(found - column.values.begin()));
+    column.index.push_back(places.at(point[at]));
   }
   return column;
 }

@@ -142,6 +142,22 @@ TEST(View, ReplacesTheCameraOfEveryKindOfScene) {
   }
 }
 
+// A narrower view of a file without a camera is seen from further away.
+TEST(View, OfAFileWithoutACameraHoldsAllOfIt) {
+  const testing::SceneFolder folder;
+  const auto obj = folder.write("a.obj", square(false, false, true));
+  folder.write("a.mtl", "newmtl m\n");
+  for (const double fov : {0.01, 0.2, 0.7854, 2.5}) {
+    OpenOptions options;
+    options.file.view.vertical_fov = fov;
+    const Scene scene = open_scene(obj.string(), options, {});
+    const glm::dvec3 sight = glm::normalize(scene.camera.at - scene.camera.eye);
+    for (const glm::dvec3& position : scene.positions) {
+      EXPECT_GT(glm::dot(glm::normalize(position - scene.camera.eye), sight), std::cos(fov / 2.0)) << fov;
+    }
+  }
+}
+
 // The default light comes over the shoulder of who looks.
 TEST(View, TurnsTheDefaultLight) {
   OpenOptions options;

@@ -323,6 +323,31 @@ TEST(WhatHelps, NamesSomethingWhereItCanReplayOneStep) {
   EXPECT_GT(advised, 20U);
 }
 
+// Numbers go to the next power of two, up to the least one that is of use; where rays move, packets are no
+// limit.
+TEST(WhatHelps, StepsToTheNextPowerOfTwo) {
+  const auto nodes_step = [](const std::vector<std::string>& settings, std::uint64_t packets) -> std::string {
+    const sim::Config config = test::configuration_of(settings);
+    FrameFacts facts;
+    facts.packets = packets;
+    const Changer changer(config);
+    for (const Resource& resource : resources_of(changer, machine_of(settings), facts)) {
+      if (resource.name == "machine.nodes") {
+        return resource.step ? resource.step->keys.front().to : "none";
+      }
+    }
+    return "none";
+  };
+  EXPECT_EQ(nodes_step({"machine.nodes=16"}, 4096), "32");
+  EXPECT_EQ(nodes_step({"machine.nodes=17"}, 31), "32");
+  EXPECT_EQ(nodes_step({"machine.nodes=32"}, 31), "none") << "more than there are packets";
+  EXPECT_EQ(nodes_step({"machine.nodes=24", "machine.scheme=space"}, 16), "32");
+  EXPECT_EQ(next_power(0), 1);
+  EXPECT_EQ(next_power(1), 2);
+  EXPECT_EQ(next_power(31), 32);
+  EXPECT_EQ(next_power(32), 64);
+}
+
 TEST(WhatHelps, SaysThatMachinesTakeTooMuchMemory) {
   test::Random random(5);
   const test::TimedCase made = test::image_case(random);

@@ -419,7 +419,7 @@ RunJson whole_result() {
     "figures": {
       "frame": {"scene": "s", "structure_nodes": 9, "structure_entries": 5, "triangles": 3, "spheres": 1,
         "cylinders": 0, "cones": 2, "materials": 1},
-      "machine": {"end": 10, "nodes": 2, "time_traversal": 15, "time_idle": 5, "lost_contention": 0.5,
+      "machine": {"end": 10, "nodes": 2, "time_traversal": 15, "time_idle": 5, "lost_extra_misses": 0, "lost_contention": 0.5, "lost_imbalance": 0, "lost_overhead": 0, "lost_idle": 0.25,
         "energy_total": 8, "energy_operations": 2, "energy_l1": 6, "node_hits": 3, "node_misses": 1,
         "list_hits": 0, "list_misses": 0}},
     "structure": {"node_records": 9, "node_bytes": 8, "levels": [
@@ -491,7 +491,8 @@ TEST(RunCharts, AreThoseOfTheResult) {
   const std::map<std::string, std::string> wanted = {
       {"run_cycles",
        R"([{"activity":"traversal","ps":15,"share":0.75},{"activity":"idle","ps":5,"share":0.25}])"},
-      {"run_loss", R"([{"part":"contention","lost":0.5}])"},
+      {"run_loss",
+       R"([{"part":"extra misses","lost":0},{"part":"contention","lost":0.5},{"part":"imbalance","lost":0},{"part":"overhead","lost":0},{"part":"no work at all","lost":0.25}])"},
       {"run_nodes", R"([{"node":0,"compute":1.0,"memory":0.0,"waits":0.0,"idle":0.0},
                         {"node":1,"compute":0.4,"memory":0.1,"waits":0.1,"idle":0.4}])"},
       {"run_references", R"([{"record":"node","hits":3,"misses":1,"hit_ratio":0.75}])"},
