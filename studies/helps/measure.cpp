@@ -95,7 +95,8 @@ class Measurement {
     double saved = 0.0;
   };
 
-  // The step, or where there is none the resource at its best.
+  // What measure_steps() replays of a case: its step. A case without a step has only the resource at its
+  // best.
   static MeasuredChange& change_of(Case& one) { return one.help.step ? *one.help.step : *one.help.best; }
   static const Change& machine_of(const Case& one) {
     return one.resource.step ? *one.resource.step : *one.resource.best;

@@ -102,9 +102,6 @@ using memory::DramPage;
 using memory::DramPolicy;
 using memory::DramTiming;
 
-// Divided by 1.1, and at least one less.
-std::int64_t less(std::int64_t now) { return std::max<std::int64_t>(std::min(now - 1, now * 10 / 11), 0); }
-
 }  // namespace
 
 void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vector<Resource>& resources) {
@@ -112,7 +109,7 @@ void add_dram(const Changer& changer, const memory::DramConfig& dram, std::vecto
     resources.push_back({std::string(key), Part::banks, step, std::nullopt, factor});
   };
   const auto shorter = [&](std::string_view key, std::int64_t now, std::int64_t least) {
-    const std::int64_t next = std::max(less(now), least);
+    const std::int64_t next = std::max(tenth_less(now), least);
     add(key, changer.with({{key, next, now}}),
         static_cast<double>(now) / static_cast<double>(std::max<std::int64_t>(next, 1)));
   };

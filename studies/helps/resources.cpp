@@ -24,6 +24,11 @@ std::int64_t next_power(std::int64_t number) {
   return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(number) + 1));
 }
 
+std::int64_t tenth_less(std::int64_t number) {
+  // Of large numbers the quotient comes first, so that the product does not overflow.
+  return std::min(number - 1, number > 1'000'000 ? number / 11 * 10 : number * 10 / 11);
+}
+
 Resource faster_clock(const Changer& changer, Part part, std::string_view key) {
   const auto now = std::get<double>(changer.now(key));
   const sim::Ticks period = sim::Clock::from_hertz(now).period();
@@ -53,9 +58,7 @@ Resource more(const Changer& changer, Part part, std::string_view key, std::opti
 
 Resource fewer(const Changer& changer, Part part, std::string_view key, std::int64_t least) {
   const std::int64_t now = whole(changer, key);
-  // Of large numbers the quotient comes first, so that the product does not overflow.
-  const std::int64_t less = now > 1'000'000 ? now / 11 * 10 : now * 10 / 11;
-  const std::int64_t next = std::clamp(std::min(now - 1, less), std::min(least, now), now);
+  const std::int64_t next = std::clamp(tenth_less(now), std::min(least, now), now);
   return {std::string(key), part, changer.with({{key, next}}),
           next > least ? changer.with({{key, least}}) : std::nullopt, next > 0 ? ratio(now, next) : 2.0};
 }

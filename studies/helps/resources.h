@@ -49,6 +49,9 @@ struct Resource {
 /// The least power of two above `number`, which must be at least 0.
 [[nodiscard]] std::int64_t next_power(std::int64_t number);
 
+/// Divided by 1.1, rounded down, and at least one less.
+[[nodiscard]] std::int64_t tenth_less(std::int64_t number);
+
 /// A clock: a tenth faster, or at periods of a few ticks the next shorter one.
 [[nodiscard]] Resource faster_clock(const Changer& changer, Part part, std::string_view key);
 /// A number of things or bytes: the next power of two; at best the least power of two from `useful` on,

@@ -19,24 +19,13 @@ namespace marti::studies::helps {
 
 // Everywhere `counts` are the counted figures of the result.
 
-/// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
-/// of banks the share of the frame in which they are busy, if that is more.
-[[nodiscard]] double share_of(Part part, const figures::Counts& counts);
-
 /// About how much of the frame a step of this resource saves, a first guess that needs no replay: what the
-/// resource takes of the time grows shorter by its factor, and no frame is shorter than what the machine's
-/// queues serve keeps them busy.
+/// resource takes of the time grows shorter by its factor, and no frame is shorter than its busiest
+/// bus, bank or link is busy.
 [[nodiscard]] double expected_saving(const Help& help, double factor,
                                      const processors::machine::MachineConfig& machine,
                                      const processors::replay::MachineResult& result,
                                      const figures::Counts& counts);
-
-/// How busy a resource is, a share of the frame; of packets how long nodes are idle. Where rays move, a node
-/// may wait for what is slow elsewhere, so there it is how busy the stage, the busiest node, the host or the
-/// network is; else share_of() its part.
-[[nodiscard]] double busy_share(const Help& help, const processors::machine::MachineConfig& machine,
-                                const processors::replay::MachineResult& result,
-                                const figures::Counts& counts);
 
 /// Why the part matters: how busy it is, or what share of the nodes' time it takes.
 [[nodiscard]] std::string why(const Help& help, const processors::machine::MachineConfig& machine,

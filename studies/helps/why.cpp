@@ -104,8 +104,8 @@ std::string why_regions(const MachineConfig& machine, const MachineResult& resul
                      100.0 * all.busy);
 }
 
-}  // namespace
-
+// The share of all nodes' time, at most 1, that has to do with a part of the machine; of an interconnect and
+// of banks the share of the frame in which they are busy, if that is more.
 double share_of(Part part, const figures::Counts& counts) {
   switch (part) {
     case Part::nodes:
@@ -136,20 +136,14 @@ double share_of(Part part, const figures::Counts& counts) {
   return share(counts, {Activity::idle, Activity::message_wait});
 }
 
-double busy_share(const Help& help, const MachineConfig& machine, const MachineResult& result,
+// How busy a resource is, a share of the frame; of packets how long nodes are idle. Where rays move, a node
+// may wait for what is slow elsewhere, so there it is how busy the busiest node, the host or the network is.
+double busy_share(const Help& help, const MachineConfig& machine, const figures::FlowFigures& flow,
                   const figures::Counts& counts) {
   if (machine.scheme == processors::machine::Scheme::image) {
     return help.name.starts_with("packets.") ? share(counts, {Activity::idle}) : share_of(help.part, counts);
   }
-  const figures::FlowFigures flow = figures::flow_figures(machine, result);
   switch (help.part) {
-    case Part::nodes:
-      for (const figures::StageLoad& stage : flow.stages) {
-        if (help.name == "pipeline." + stage.name) {
-          return stage.busiest;
-        }
-      }
-      return flow.slowest().busy;
     case Part::network:
       return figure(counts, "network_utilisation");
     case Part::messages:
@@ -163,19 +157,31 @@ double busy_share(const Help& help, const MachineConfig& machine, const MachineR
   }
 }
 
+// What a resource of the nodes takes of a frame in which rays move: a stage the time of its own busiest node;
+// more nodes, and faster ones, help the slowest stage or node, and all others too.
+double nodes_share(const std::string& name, const figures::FlowFigures& flow) {
+  for (const figures::StageLoad& stage : flow.stages) {
+    if (name == "pipeline." + stage.name) {
+      return stage.busiest;
+    }
+  }
+  return std::max(flow.slowest().busiest, flow.all.busiest);
+}
+
+}  // namespace
+
 double expected_saving(const Help& help, double factor, const MachineConfig& machine,
                        const MachineResult& result, const figures::Counts& counts) {
   const double gone = 1.0 - 1.0 / factor;
-  if (machine.scheme != processors::machine::Scheme::image && help.part == Part::nodes) {
-    // More nodes, and faster ones, help the slowest stage or node, and all others too.
-    const figures::FlowFigures flow = figures::flow_figures(machine, result);
-    return help.name.starts_with("pipeline.") ? busy_share(help, machine, result, counts) * gone
-                                              : std::max(flow.slowest().busiest, flow.all.busiest) * gone;
+  const bool image = machine.scheme == processors::machine::Scheme::image;
+  const figures::FlowFigures flow = image ? figures::FlowFigures{} : figures::flow_figures(machine, result);
+  if (!image && help.part == Part::nodes) {
+    return nodes_share(help.name, flow) * gone;
   }
   const double full = std::max({figure(counts, "interconnect_utilisation"),
                                 figure(counts, "bank_utilisation"), figure(counts, "network_utilisation")});
   if (help.part != Part::nodes || help.name.starts_with("packets.")) {
-    double takes = busy_share(help, machine, result, counts);
+    double takes = busy_share(help, machine, flow, counts);
     if (help.part == Part::caches || help.part == Part::second_level) {
       takes = std::max(takes, full);  // what hits does not queue
     }

@@ -57,7 +57,7 @@ bool is_result(const std::filesystem::path& file, const std::string& json) {
   try {
     return sim::read_file(file, static_cast<std::int64_t>(json.size())) == json;
   } catch (const sim::UserError&) {
-    return false;  // there is none, or a longer one
+    return false;  // no file that can be read, or one longer than `json`
   }
 }
 

@@ -68,6 +68,14 @@ std::vector<DescribedChart> described_charts(std::string_view of) {
   return all;
 }
 
+std::string query_of(const Json& meta) {
+  std::string sql;
+  for (const Json& line : meta.at("sql")) {
+    sql += line.get<std::string>() + "\n";
+  }
+  return sql;
+}
+
 std::string replaced(std::string text, const ChartWords& words) {
   for (const auto& [word, other] : words) {
     for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += other.size()) {
@@ -80,11 +88,7 @@ std::string replaced(std::string text, const ChartWords& words) {
 void add_queried(const tables::RunJson& run, ReportData& report) {
   ResultTables result(run);
   for (const auto& [file, meta] : described_charts("run")) {
-    std::string sql;
-    for (const Json& line : meta.at("sql")) {
-      sql += line.get<std::string>() + "\n";
-    }
-    const Json rows = result.rows(sql);
+    const Json rows = result.rows(query_of(meta));
     if (rows.empty()) {
       continue;
     }

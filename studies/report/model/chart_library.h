@@ -51,6 +51,9 @@ struct DescribedChart {
   nlohmann::ordered_json meta;
 };
 
+/// The query of a description that has one.
+[[nodiscard]] std::string query_of(const nlohmann::ordered_json& meta);
+
 /// Those of such results, in their order.
 [[nodiscard]] std::vector<DescribedChart> described_charts(std::string_view of);
 

@@ -43,6 +43,11 @@ SELECT node.key AS node, activities.name AS activity, kind, time.value AS ps
 FROM result, json_each(result.json, '$.machine.per_node') AS node, json_each(node.value, '$.time_ps') AS time
   JOIN activities ON activities.name = time.key;
 
+CREATE VIEW node_shares AS
+SELECT node, CASE kind WHEN 'computing' THEN 'compute' WHEN 'memory' THEN 'memory' WHEN 'idle' THEN 'idle'
+  ELSE 'waits' END AS what, TOTAL(ps) / (SELECT value FROM figures WHERE name = 'end') AS share
+FROM node_times GROUP BY node, what;
+
 CREATE VIEW waits AS
 WITH histograms(what, buckets) AS (
   SELECT 'interconnect', value -> '$.interconnect.waits.histogram_ps'

@@ -21,6 +21,7 @@ namespace marti::studies::report {
 /// - levels(level, branches, leaves, empty_leaves, entries): of the structure, from 1, the root
 /// - level_references(level, record, references, misses): of counting caches
 /// - node_times(node, activity, kind, ps)
+/// - node_shares(node, what, share): of the frame; what is "compute", "memory", "waits" or "idle"
 /// - waits(what, highest_ps, count): buckets of histograms; what is "interconnect", "bank" or "network"
 ///
 /// Times are in ps, energies in fJ. A table lacks what the result lacks. Throws UserError, naming the file,

@@ -62,7 +62,7 @@ constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
 
 std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
   std::vector<std::string> names = reader.figures();
-  if (reader.points().size() <= most_points_with_all) {
+  if (reader.point_count() <= most_points_with_all) {
     return names;
   }
   std::set<std::string, std::less<>> wanted(std::begin(counters), std::end(counters));

@@ -79,6 +79,10 @@ std::vector<StoredPoint> SweepReader::points() const {
   return points;
 }
 
+std::size_t SweepReader::point_count() const {
+  return static_cast<std::size_t>(connection_.value<std::int64_t>("SELECT count(*) FROM points").value_or(0));
+}
+
 std::optional<std::int64_t> SweepReader::compare() const {
   return connection_.value<std::int64_t>("SELECT machine FROM compare");
 }

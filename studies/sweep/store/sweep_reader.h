@@ -51,6 +51,7 @@ class SweepReader {
   [[nodiscard]] const std::string& version() const { return version_; }
   [[nodiscard]] const std::vector<std::string>& axes() const { return axes_; }
   [[nodiscard]] std::vector<StoredPoint> points() const;
+  [[nodiscard]] std::size_t point_count() const;
   /// The machine that all are compared with.
   [[nodiscard]] std::optional<std::int64_t> compare() const;
 

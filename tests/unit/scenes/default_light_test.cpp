@@ -96,7 +96,8 @@ TEST(DefaultLight, IsInEveryPose) {
   EXPECT_EQ(first.lights[1].direction, last.lights[1].direction);
 }
 
-// Whatever the file, in each pose of it; what is not given stays as it is.
+// In every kind of scene and in each pose. A member of the view that is not given is that of the scene's
+// camera.
 TEST(View, ReplacesTheCameraOfEveryKindOfScene) {
   const testing::SceneFolder folder;
   testing::GltfFile moving = testing::GltfFile::square();

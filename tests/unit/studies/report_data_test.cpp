@@ -462,11 +462,7 @@ void collect_fields(const Json& part, std::set<std::string>& shown, std::set<std
 TEST(RunCharts, HaveRowsWithAllFieldsThatTheyShow) {
   ResultTables result(whole_result());
   for (const DescribedChart& described : described_charts("run")) {
-    std::string sql;
-    for (const Json& line : described.meta.at("sql")) {
-      sql += line.get<std::string>() + "\n";
-    }
-    const Json rows = result.rows(sql);
+    const Json rows = result.rows(query_of(described.meta));
     if (described.file == "run_nodes_envelope") {
       EXPECT_TRUE(rows.empty()) << "two nodes have a bar each";
       continue;
