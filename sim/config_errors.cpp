@@ -24,15 +24,16 @@ struct Period {
 };
 
 Period period_of(std::span<const EffectiveValue> values, std::string_view section) {
-  const EffectiveValue* clock = find(values, std::string(section) + ".clock");
-  if (clock == nullptr) {
-    clock = find(values, "node.clock");
+  for (const std::string& key : {std::string(section) + ".clock", std::string("node.clock")}) {
+    if (const EffectiveValue* const clock = find(values, key)) {
+      const std::string_view quoted = clock->value;
+      const double hertz = parse_frequency(quoted.substr(1, quoted.size() - 2));
+      if (hertz > 0.0) {  // 0: the clock of another part, which has a key itself
+        return {1.0 / hertz, clock->key};
+      }
+    }
   }
-  if (clock == nullptr) {
-    return {};
-  }
-  const std::string_view quoted = clock->value;
-  return {1.0 / parse_frequency(quoted.substr(1, quoted.size() - 2)), clock->key};
+  return {};
 }
 
 std::optional<double> cycles_of(const EffectiveValue& value) {

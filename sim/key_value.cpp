@@ -1,5 +1,6 @@
 #include "sim/key_value.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/error.h"
@@ -134,7 +135,10 @@ Value convert(const Key& key, const DocumentValue& node, std::string_view place)
     }
     message += ", not " + shown(print_value(key.type, value));
     if (key.type == ValueType::choice) {
-      message += did_you_mean(std::get<std::string>(value), key.choices);
+      const auto& given = std::get<std::string>(value);
+      const auto renamed = std::ranges::find(key.renamed, given, &RenamedChoice::before);
+      message += renamed == key.renamed.end() ? did_you_mean(given, key.choices)
+                                              : ", which is \"" + std::string(renamed->now) + "\" now";
     }
     fail_at(place, message);
   }

@@ -237,10 +237,11 @@ void Schema::text(std::string_view name, std::string_view default_value, std::st
 }
 
 void Schema::choice(std::string_view name, std::string_view default_value, std::vector<std::string> choices,
-                    std::string_view meaning) {
+                    std::string_view meaning, std::span<const RenamedChoice> renamed) {
   Key key = make_key(name, ValueType::choice, "", meaning);
   key.default_value.emplace_back(std::string(default_value));
   key.choices = std::move(choices);
+  key.renamed = renamed;
   add(std::move(key));
 }
 

@@ -41,6 +41,13 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 /// The value as written in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
 std::string print_value(ValueType type, const Value& value);
 
+/// A name that a choice had before. It is refused with a message that says the new one, so that no file means
+/// something by it that its reader cannot look up.
+struct RenamedChoice {
+  std::string_view before;
+  std::string_view now;
+};
+
 struct Key {
   std::string name;  // dotted: "cache.size"
   ValueType type = ValueType::text;
@@ -48,9 +55,10 @@ struct Key {
   std::vector<Value> default_value;  // exactly one unless is_list
   std::optional<Value> minimum;      // inclusive; never for boolean, text, choice
   std::optional<Value> maximum;
-  std::vector<std::string> choices;  // of a choice, in the order of their indices
-  std::string unit;                  // for an integer or a real: "cycles"; empty if it has none
-  std::string meaning;               // one or two sentences, without the full stop
+  std::vector<std::string> choices;        // of a choice, in the order of their indices
+  std::span<const RenamedChoice> renamed;  // of a choice; must outlive the schema
+  std::string unit;                        // for an integer or a real: "cycles"; empty if it has none
+  std::string meaning;                     // one or two sentences, without the full stop
 };
 
 /// Whether the key has this name or lies in the section of this name or below it; always if it is empty.
@@ -106,7 +114,7 @@ class Schema {
             std::string_view meaning);
   void text(std::string_view name, std::string_view default_value, std::string_view meaning);
   void choice(std::string_view name, std::string_view default_value, std::vector<std::string> choices,
-              std::string_view meaning);
+              std::string_view meaning, std::span<const RenamedChoice> renamed = {});
   void size(std::string_view name, std::string_view default_value, Range<std::string_view> range,
             std::string_view meaning);
   void frequency(std::string_view name, std::string_view default_value, Range<std::string_view> range,

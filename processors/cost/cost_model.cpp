@@ -15,9 +15,13 @@ struct Preset {
   machine::OperationCycles cycles;
 };
 
-constexpr std::array<std::string_view, 3> names{"unit", "mc68882", "modern"};
+constexpr std::array<std::string_view, 4> names{"unit", "mc68882-1989", "arm1176-2003", "cortex-a510-2021"};
 
-constexpr std::array<Preset, 3> presets{{
+// Names that said less, and what they are called now.
+constexpr std::array<sim::RenamedChoice, 2> renamed{
+    {{"mc68882", "mc68882-1989"}, {"modern", "arm1176-2003"}}};
+
+constexpr std::array<Preset, 4> presets{{
     // One cycle for every operation: for arguments about counts, and for tests.
     {"unit",
      {.add = 1,
@@ -37,7 +41,7 @@ constexpr std::array<Preset, 3> presets{{
     // tables themselves were not at hand; other models quote the same totals, but for FCMP, which one
     // of them has with FADD at 56. The other three are conventions, not figures: 4 cycles for an integer
     // instruction, 6 to issue the load of a long word and 4 for a store.
-    {"mc68882",
+    {"mc68882-1989",
      {.add = 56,
       .multiply = 76,
       .divide = 108,
@@ -46,16 +50,37 @@ constexpr std::array<Preset, 3> presets{{
       .integer = 4,
       .load = 6,
       .store = 4}},
-    // An in-order scalar core with a pipelined double-precision unit whose every operation waits for the
-    // one before: the latencies of the ARM11's VFP11 (ARM1176JZF-S Technical Reference Manual, ARM DDI
+    // An in-order scalar core of 2003 with a pipelined double-precision unit whose every operation waits for
+    // the one before: the latencies of the ARM11's VFP11 (ARM1176JZF-S Technical Reference Manual, ARM DDI
     // 0301H, table 21-16: FADD 8, FMUL 9, FDIV and FSQRT 33, FCMP 4). Integer operations, loads and stores
     // are issued one a cycle.
-    {"modern",
+    {"arm1176-2003",
      {.add = 8,
       .multiply = 9,
       .divide = 33,
       .square_root = 33,
       .compare = 4,
+      .integer = 1,
+      .load = 1,
+      .store = 1}},
+    // A small in-order core of today, the Cortex-A510 (Arm, 2021), whose pipelines are kept full, as a
+    // compiler
+    // does that has other rays' operations to put between dependent ones: each operation costs the cycles
+    // until the next one of its kind can begin, not its latency. Single precision, as the 4-byte coordinates
+    // of the database. From LLVM's model of it, after Arm's Cortex-A510 Software Optimization Guide
+    // (github.com/llvm/llvm-project, commit 48f247b, llvm/lib/Target/AArch64/AArch64SchedA510.td): a division
+    // has its unit for 10 cycles (CortexA510WriteFDivSP), a square root for 9 (CortexA510WriteFSqrtSP); of
+    // double precision both take 19. Additions and comparisons have two pipelines (WriteF, WriteFCmp), so do
+    // multiplications (WriteFMul) and loads (WriteLD), integer operations have three (WriteI) and stores one
+    // (WriteST), each of which takes a new operation every cycle. All of these cost one cycle: operations of
+    // a
+    // step are issued one a cycle here, while the core can issue up to three side by side.
+    {"cortex-a510-2021",
+     {.add = 1,
+      .multiply = 1,
+      .divide = 10,
+      .square_root = 9,
+      .compare = 1,
       .integer = 1,
       .load = 1,
       .store = 1}},
@@ -83,6 +108,8 @@ std::int64_t price(const OperationMix& mix, const machine::OperationCycles& cycl
 }
 
 std::span<const std::string_view> cost_presets() { return names; }
+
+std::span<const sim::RenamedChoice> renamed_cost_presets() { return renamed; }
 
 machine::OperationCycles cost_preset(std::string_view name) {
   std::string known;

@@ -11,6 +11,7 @@
 #include "accel/traversal.h"
 #include "processors/machine/operation_cycles.h"
 #include "processors/program/work_log.h"
+#include "sim/schema.h"
 
 namespace marti::processors::cost {
 
@@ -45,8 +46,12 @@ struct StepCycles {
   std::int64_t pixel = 0;  ///< converting and storing one finished pixel
 };
 
-/// Names of the presets, for the configuration reference.
+/// Names of the presets, for the configuration reference: a processor and its year; `unit` is none.
 [[nodiscard]] std::span<const std::string_view> cost_presets();
+/// The default of the configuration.
+inline constexpr std::string_view default_cost_preset = "arm1176-2003";
+/// Names that presets had before, which are refused.
+[[nodiscard]] std::span<const sim::RenamedChoice> renamed_cost_presets();
 
 /// The costs of a named preset. Throws UserError for an unknown name. Each preset's source is in
 /// cost_model.cpp.

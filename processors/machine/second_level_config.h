@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "memory/cache_config.h"
+#include "sim/time.h"
 
 namespace marti::processors::machine {
 
@@ -18,7 +20,9 @@ struct SecondLevelConfig {
   SecondLevel sharing = SecondLevel::none;
   /// `line` is ignored: the first level's is used, or without a first level the interleave of the banks.
   memory::CacheConfig cache{.size = 256 * 1024, .line = 32, .ways = 8};
-  std::int64_t hit_cycles = 4;  ///< private: of the node's clock; shared: of the banks' clock
+  /// Nothing: private, the node's clock; shared, the interconnect's.
+  std::optional<sim::Clock> clock;
+  std::int64_t hit_cycles = 4;
 };
 
 }  // namespace marti::processors::machine

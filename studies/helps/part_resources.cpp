@@ -92,6 +92,9 @@ void add_caches(const Changer& changer, const processors::machine::MachineConfig
     if (cache.ways != memory::full_ways) {
       resources.push_back(more_ways(changer, Part::second_level, "l2.ways", cache));
     }
+    if (machine.l2.clock) {  // else the clock of another part, which is a resource itself
+      resources.push_back(faster_clock(changer, Part::second_level, "l2.clock"));
+    }
     resources.push_back(fewer(changer, Part::second_level, "l2.hit_cycles"));
   }
 }

@@ -22,8 +22,9 @@ void declare_second_level_keys(sim::Schema& schema) {
                 "which line of a full set is replaced");
   schema.integer("l2.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
-  cycles(schema, "l2.hit_cycles", 4,
-         "cycles of a look-up that hits: private: of the node's clock; shared: of memory.clock");
+  schema.frequency("l2.clock", "0 Hz", {"0 Hz", "1 THz"},
+                   "clock of the second level; 0 Hz: private: node.clock; shared: interconnect.clock");
+  cycles(schema, "l2.hit_cycles", 4, "cycles of l2.clock of a look-up that hits");
 }
 
 void read_second_level(sim::Config& config, processors::machine::MachineConfig& machine) {
@@ -37,6 +38,11 @@ void read_second_level(sim::Config& config, processors::machine::MachineConfig& 
   l2.cache.size = static_cast<std::uint64_t>(config.size("l2.size"));
   l2.cache.ways = count(config, "l2.ways");
   l2.cache.replacement = config.choice_as<memory::Replacement>("l2.replacement");
+  if (const double hertz = config.frequency("l2.clock"); hertz >= 1.0) {
+    l2.clock = sim::Clock::from_hertz(hertz);
+  } else if (hertz > 0.0) {
+    config.fail("l2.clock", "must be 0 Hz, for the clock of what it stands beside, or at least 1 Hz");
+  }
   l2.hit_cycles = config.integer("l2.hit_cycles");
   if (l2.cache.replacement == memory::Replacement::random) {
     l2.cache.seed = static_cast<std::uint64_t>(config.integer("l2.seed"));

@@ -161,10 +161,6 @@ void read_memory(sim::Config& config, processors::machine::MachineConfig& machin
   DramConfig& dram = machine.banks.dram.emplace();
   read_preset(config, dram);
   read_controller(config, dram);
-  if (config.choice_as<processors::machine::SecondLevel>("l2.sharing") ==
-      processors::machine::SecondLevel::shared) {
-    machine.banks.clock = clock(config, "memory.clock");  // of that cache
-  }
   config.mark_unused_reason("dram.queue", "only dram.policy = \"frfcfs\" has a queue to choose from",
                             "dram.policy");
   config.mark_unused_reason("dram.reorder_cap", "only dram.policy = \"frfcfs\" changes the order",

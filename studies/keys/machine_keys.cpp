@@ -71,7 +71,9 @@ void declare_node(Schema& schema) {
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
   const std::vector<std::string> presets = sim::mapped(
       processors::cost::cost_presets(), [&](const std::string_view preset) { return std::string(preset); });
-  schema.choice("costs.preset", presets.back(), presets, "the processor whose operation timings are taken");
+  schema.choice("costs.preset", processors::cost::default_cost_preset, presets,
+                "the processor whose operation timings are taken, with its year; unit: one cycle each",
+                processors::cost::renamed_cost_presets());
   for (const auto& [name, member] : operations) {
     schema.integer(name, -1, {-1, 1'000'000}, "cycles", "cycles of one such operation; -1: the preset's");
   }
@@ -162,7 +164,7 @@ void declare_interconnect(Schema& schema) {
   schema.size("memory.interleave", "0 B", {"0 B", "1 GiB"},
               "bytes in a row that share a bank, a power of two, and without a cache the most that one "
               "reference reads; 0: a cache line, or 32 B without a cache");
-  clock(schema, "memory.clock", "clock of the banks, and of a shared second level before banks or DRAM");
+  clock(schema, "memory.clock", "clock of the banks");
   cycles(schema, "memory.access_cycles", 4, "cycles from the start of an access to its data");
   cycles(schema, "memory.busy_cycles", 6, "cycles from the start of an access to the next");
   declare_dram_keys(schema);

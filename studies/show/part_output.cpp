@@ -34,7 +34,8 @@ std::vector<std::string> clock_notes(const std::vector<sim::EffectiveValue>& val
   }
   std::vector<std::string> notes;
   for (const sim::EffectiveValue& value : values) {
-    if (fastest != nullptr && value.key.ends_with(".clock") && !value.given &&
+    // A clock of 0 Hz is that of another part, which is in the list itself.
+    if (fastest != nullptr && value.key.ends_with(".clock") && !value.given && hertz(value) > 0.0 &&
         hertz(*fastest) > far * hertz(value)) {
       notes.push_back(fmt::format("{} is {}, the default, beside {} of {}", value.key,
                                   keys::plain_setting(value.value), fastest->key,

@@ -67,8 +67,13 @@ const std::vector<Duration>& durations() {
 
 /// All but that of DRAM.
 std::vector<sim::Clock*> clocks_of(MachineConfig& machine) {
-  return {&machine.clock,       &machine.local.clock,   &machine.interconnect.clock,
-          &machine.banks.clock, &machine.network.clock, &machine.host.clock};
+  std::vector<sim::Clock*> clocks = {
+      &machine.clock,       &machine.local.clock,   &machine.interconnect.clock,
+      &machine.banks.clock, &machine.network.clock, &machine.host.clock};
+  if (machine.l2.clock) {
+    clocks.push_back(&*machine.l2.clock);
+  }
+  return clocks;
 }
 
 /// Multiplies every duration of the machine by `factor`; false when a clock's period would not fit.

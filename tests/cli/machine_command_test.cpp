@@ -84,6 +84,9 @@ TEST(MachineCommand, ClocksLeftAtTheirDefaultBesideFasterOnesAreTold) {
   EXPECT_EQ(printed_json(run + " --set node.clock=133MHz")["machine"]["notes"],
             nlohmann::json({"memory.clock is 33 MHz, the default, beside node.clock of 133 MHz",
                             "host.clock is 33 MHz, the default, beside node.clock of 133 MHz"}));
+  EXPECT_EQ(printed_json(run + " --set node.clock=133MHz --set l2.sharing=shared")["machine"]["notes"].size(),
+            2)
+      << "its clock is the interconnect's";
   EXPECT_TRUE(says(marti(run + " --set node.clock=133MHz"),
                    "\n  note        memory.clock is 33 MHz, the default, beside node.clock of 133 MHz\n"));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <optional>
 #include <ostream>
 
 #include "processors/program/ray_tree.h"
@@ -166,6 +167,9 @@ TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
                               &c.machine.host.clock, &c.machine.local.clock, &c.machine.network.clock}) {
       *clock = sim::Clock::from_period(clock->period() * scale);
     }
+    if (std::optional<sim::Clock>& clock = c.machine.l2.clock) {
+      clock = sim::Clock::from_period(clock->period() * scale);
+    }
     const bool late = c.machine.banks.dram && c.machine.banks.dram->policy == memory::DramPolicy::frfcfs;
     if (c.machine.banks.dram) {
       c.machine.banks.dram->period *= scale;
@@ -181,6 +185,25 @@ TEST_P(Schemes, ScalingEveryDurationScalesEveryTimeExactly) {
         EXPECT_EQ(scaled.nodes[n].time[i], base.nodes[n].time[i] * scale);
       }
     }
+  });
+}
+
+// The second level's clock is, unless it has one of its own, that of what it stands beside; and a clock that
+// is so many times as fast with so many times the cycles changes nothing.
+TEST_P(Schemes, TheSecondLevelHasAClockOfItsOwn) {
+  for_random_cases("clock of the second level", [](TimedCase& c, Random& random) {
+    MachineConfig& machine = c.machine;
+    const std::int64_t times = pick(random, 2, 5);
+    machine.l2.clock.reset();
+    const sim::Clock beside =
+        machine.l2.sharing == SecondLevel::shared ? machine.interconnect.clock : machine.clock;
+    machine.l2.hit_cycles *= times;
+    const MachineResult base = replay::replay(c.log, machine, c.options);
+    machine.l2.clock = beside;
+    expect_equal(replay::replay(c.log, machine, c.options), base);
+    machine.l2.hit_cycles /= times;
+    machine.l2.clock = sim::Clock::from_period(beside.period() * times);
+    expect_equal(replay::replay(c.log, machine, c.options), base);
   });
 }
 

@@ -167,7 +167,7 @@ def random_machines(count, seed):
         some(0.2, m, "node.write_buffer", 1, 2, 16)
         some(0.25, m, "node.contexts", 2, 4, 16)
         some(0.2, m, "node.switch_cycles", 0, 3)
-        one(m, "costs.preset", "modern", "unit", "unit")
+        one(m, "costs.preset", "arm1176-2003", "unit", "unit")
         one(m, "cache.organisation", "unified", "unified", "unified", "split", "none")
         m["cache.size"] = size(8, 16)
         m["cache.line"] = f"{16 << source.randint(0, 3)} B"

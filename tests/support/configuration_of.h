@@ -103,6 +103,9 @@ inline void assign_caches(const processors::machine::MachineConfig& m, Assignmen
   to.set("l2.size", static_cast<std::int64_t>(m.l2.cache.size));
   to.set("l2.ways", m.l2.cache.ways);
   to.choose("l2.replacement", memory::replacement_names, m.l2.cache.replacement);
+  if (m.l2.clock) {
+    to.set("l2.clock", *m.l2.clock);
+  }
   to.set("l2.hit_cycles", m.l2.hit_cycles);
 }
 

@@ -280,6 +280,10 @@ inline void add_random_second_level(Random& random, processors::machine::Machine
   using processors::machine::SecondLevel;
   machine.l2.sharing = static_cast<SecondLevel>(pick(random, 0, 2));
   machine.l2.hit_cycles = pick(random, 0, 3);
+  // Half of them beside a clock of their own.
+  if (random() % 2 == 0) {
+    machine.l2.clock = sim::Clock::from_period(pick(random, 1, 40));
+  }
   memory::CacheConfig& cache = machine.l2.cache;
   const bool none = machine.cache.organisation == processors::machine::CacheOrganisation::none;
   cache.line = none ? machine.banks.interleave : machine.cache.cache.line;

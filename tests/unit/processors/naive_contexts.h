@@ -273,7 +273,7 @@ class NaiveContexts final : public sim::EventHandler {
           counted_->second_level_hit(action);
         }
         go_on(number, processors::cost::Activity::cache_access,
-              machine_.clock.cycles(machine_.l2.hit_cycles));
+              machine_.l2.clock.value_or(machine_.clock).cycles(machine_.l2.hit_cycles));
         return;
       }
     }
@@ -526,7 +526,7 @@ class NaiveContexts final : public sim::EventHandler {
           counted_->bring_in(number, static_cast<std::size_t>(key.first), line);
         }
         if (second_level_has(node, line)) {
-          const sim::Ticks hit = machine_.clock.cycles(machine_.l2.hit_cycles);
+          const sim::Ticks hit = machine_.l2.clock.value_or(machine_.clock).cycles(machine_.l2.hit_cycles);
           node.flights[slot] = flight;
           flight->second_level = true;
           read_done(number, slot, {engine_.now() + hit, 0, 0, 0, 0});

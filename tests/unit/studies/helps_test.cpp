@@ -217,7 +217,7 @@ std::vector<std::string> machine_of_today(std::uint64_t seed) {
     settings.insert(settings.end(),
                     {"image.integrator=path", "image.samples=2", "image.width=40", "image.height=40"});
   }
-  add("costs.preset", {"unit", "mc68020", "modern"});
+  add("costs.preset", {"unit", "arm1176-2003", "cortex-a510-2021"});
   add("node.clock", {"50 MHz", "500 MHz", "2 GHz"});
   add("machine.nodes", {"4", "16", "64", "256"});
   add("cache.size", {"2 KiB", "16 KiB", "64 KiB"});
@@ -244,7 +244,7 @@ std::vector<std::string> machine_of_today(std::uint64_t seed) {
   add("interconnect.clock", {"33 MHz", "400 MHz", "1500 MHz"});
   if (random() % 3 == 0) {
     settings.insert(settings.end(), {std::string("memory.model=dram"),
-                                     "dram.preset=" + one_of({"ddr4-3200", "ddr5-4800", "hbm2"})});
+                                     "dram.preset=" + one_of({"ddr4-2400", "ddr5-4800", "hbm2-2000"})});
   } else {
     add("memory.banks", {"1", "4", "16"});
     add("memory.clock", {"33 MHz", "800 MHz"});
