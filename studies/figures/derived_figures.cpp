@@ -203,12 +203,13 @@ std::string loss_text(std::string_view loss) {
 
 std::string_view gain_of(std::string_view loss) {
   if (loss == "extra_misses") {
-    return "fewer misses, because all caches together hold more than one";
+    return "less time for hits and misses, as where all caches together hold more than one";
   }
   if (loss == "contention") {
     return "shorter waits for interconnect and banks";
   }
-  return loss == "overhead" ? "shorter waits for packets and for full queues" : "shorter waits for work";
+  return loss == "overhead" ? "shorter waits for packets and for full queues, or fewer switches of contexts"
+                            : "shorter waits for work";
 }
 
 std::optional<double> figure_of(const MeasuredCounts& counts, std::string_view name) {

@@ -20,7 +20,8 @@ inline constexpr std::array<std::string_view, 5> loss_names = {"extra_misses", "
 
 /// A part of the lost speed-up for people: "extra misses".
 [[nodiscard]] std::string loss_text(std::string_view loss);
-/// Through what n nodes are faster than n times one, where this part is below 0: "fewer misses ...".
+/// Through what n nodes are faster than n times one, where this part is below 0: "less time for hits and
+/// misses ...".
 [[nodiscard]] std::string_view gain_of(std::string_view loss);
 
 /// A machine's counts, and those of the machines that it is measured against, where they are known.

@@ -78,19 +78,27 @@ SweepOutlook outlook_of(const SweepPlan& plan, const WorkDone& done, unsigned th
           std::reduce(bytes.begin(), largest, std::uint64_t{0})};
 }
 
-// Ends a store and removes its file if that holds no result. On a full disk, where a store cannot be ended,
-// it stays.
-void remove_if_empty(SweepStore& store, const std::filesystem::path& file) {
+// Removes a store that this process has made if it holds no result, with what SQLite keeps beside it: also on
+// a full disk, where the store cannot be ended, or could not even be begun and is null.
+void remove_if_empty(SweepStore* store, const std::filesystem::path& file) {
   const auto any = [](const std::vector<bool>& done) { return std::ranges::find(done, true) != done.end(); };
   try {
-    if (any(store.done()) || any(store.frames_done())) {
+    if (store != nullptr && (any(store->done()) || any(store->frames_done()))) {
       return;
     }
-    store.close();
-    if (std::error_code ignored; !tables::has_log_or_journal(file)) {
-      std::filesystem::remove(file, ignored);
+  } catch (const sim::UserError&) {
+    return;  // it may hold some
+  }
+  try {
+    if (store != nullptr) {
+      store->close();
     }
   } catch (const sim::UserError&) {
+    // What could not be written is of no use to anybody.
+  }
+  for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
+    std::error_code ignored;
+    std::filesystem::remove(file.string() + suffix, ignored);
   }
 }
 
@@ -105,7 +113,14 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   WorkDone done;
   {
     const host::AtSignal unlocked(unlock);
-    store.emplace(report.store, plan, &*lock);
+    try {
+      store.emplace(report.store, plan, &*lock);
+    } catch (...) {
+      if (is_new) {
+        remove_if_empty(nullptr, report.store);
+      }
+      throw;
+    }
     for (const std::filesystem::path& part : parts) {
       store->merge(part);
     }
@@ -120,7 +135,7 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   const auto clean_up = [&] {
     progress.end();
     if (is_new) {
-      remove_if_empty(*store, report.store);
+      remove_if_empty(&*store, report.store);
     }
   };
   try {

@@ -36,6 +36,14 @@ inline TimedCase contexts_case(Random& random) {
   return made;
 }
 
+/// More contexts than there are packets: those that never get one are left out of a replay, but for one step
+/// by step.
+inline TimedCase idle_contexts_case(Random& random) {
+  TimedCase made = contexts_case(random);
+  made.machine.contexts = static_cast<std::uint32_t>(pick(random, 2, 100));
+  return made;
+}
+
 /// The tree is built on the machine, by any of the ways and from any state of the tree.
 inline TimedCase building_case(Random& random) {
   TimedCase made{random_log_with_tree(random), random_machine(random), {}};

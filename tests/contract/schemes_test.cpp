@@ -311,6 +311,7 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          ::testing::Values(SchemeCase{"image", test::image_case},
                                            SchemeCase{"contexts", test::contexts_case},
+                                           SchemeCase{"idle_contexts", test::idle_contexts_case},
                                            SchemeCase{"building", test::building_case},
                                            SchemeCase{"building_contexts", test::building_contexts_case},
                                            SchemeCase{"pipeline", test::pipeline_case},

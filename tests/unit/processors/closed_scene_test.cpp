@@ -15,6 +15,7 @@
 
 #include "processors/program/render.h"
 #include "program_scenes.h"
+#include "tests/support/long_tests.h"
 #include "tests/unit/scenes/gltf_file.h"
 #include "tests/unit/scenes/text_scene.h"
 
@@ -140,12 +141,13 @@ struct Lost {
   std::uint64_t blocked = 0;  ///< of these
 };
 
-Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats) {
-  RenderOptions options{.width = 48, .height = 48, .max_depth = 12};
+Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats, std::uint32_t side = 48,
+             const char* structure = "bvh") {
+  RenderOptions options{.width = side, .height = side, .max_depth = 12};
   options.integrator = integrator;
   options.samples = integrator == Integrator::path ? 3 : 1;
   options.floats = floats;
-  const Frame frame = Built(scene, "bvh").render(options);
+  const Frame frame = Built(scene, structure).render(options);
   Lost lost;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     const bool shadow = kind == static_cast<std::size_t>(RayKind::shadow);
@@ -188,6 +190,31 @@ TEST_P(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
               << body << " at " << far << " of " << lost.rays << (floats ? ", floats" : "");
           EXPECT_EQ(lost.blocked, 0U)
               << body << " at " << far << " of " << lost.shadows << (floats ? ", floats" : "");
+        }
+      }
+    }
+  }
+}
+
+// What floats allow follows from their spacing, a part in 2^24 of the coordinates: bodies of whatever size as
+// far away as 1,000 of their own, at 1e6 too, are closed.
+TEST(ClosedScenes, AreClosedInFloatsWhereverBodiesAreLargeEnough) {
+  for (const double far : {0.0, 1000.0, 1e6}) {
+    const glm::dvec3 center(far, far, far);
+    const double size = far / 1000.0 + (far == 0.0 ? 1.0 : 0.0);
+    for (const bool sphere : {false, true}) {
+      scenes::Scene scene = inside_of(center);
+      sphere ? add_sphere(scene, center, 2.0 * size, 12) : add_box(scene, center, glm::dvec3(size), 5);
+      for (const char* const structure : {"octree", "bsp", "grid", "bvh"}) {
+        for (const Integrator integrator : {Integrator::whitted, Integrator::path}) {
+          for (const bool floats : {false, true}) {
+            if (floats && structure != std::string("bvh") && marti::test::stride(0, 1) == 0) {
+              continue;  // cells are walked slowly in floats
+            }
+            const Lost lost = lost_in(scene, integrator, floats, 24, structure);
+            EXPECT_EQ(lost.escaped + lost.blocked, 0U) << (sphere ? "sphere" : "cube") << " at " << far
+                                                       << " in " << structure << (floats ? ", floats" : "");
+          }
         }
       }
     }

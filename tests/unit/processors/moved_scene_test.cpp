@@ -113,35 +113,79 @@ std::vector<std::pair<std::string, scenes::Scene>> scenes_of_all_lights() {
                      light.color = glm::dvec3(30.0);
                    }));
   all.emplace_back("emitter on the floor", blocks([](scenes::Scene& scene) { add_emitter(scene, 0.0); }));
-  all.emplace_back("emitter above", blocks([](scenes::Scene& scene) {
-                     scene.lights.clear();
-                     add_emitter(scene, 2.0);
+  all.emplace_back("emitter above", blocks([](scenes::Scene& scene) { add_emitter(scene, 2.0); }));
+  all.emplace_back("all together", blocks([](scenes::Scene& scene) {
+                     for (const auto kind : {scenes::LightKind::point, scenes::LightKind::directional,
+                                             scenes::LightKind::spot}) {
+                       scenes::Light& light = scene.lights.emplace_back();
+                       light.kind = kind;
+                       light.position = {-1.2, -3.0, 2.9};
+                       light.direction = glm::normalize(glm::dvec3(1.0, 2.0, -2.0));
+                       light.inverse_square = kind != scenes::LightKind::directional;
+                     }
+                     add_emitter(scene, 2.5);
                    }));
   return all;
 }
 
-RayCounts counts(const scenes::Scene& scene, std::uint32_t samples = 2) {
+RayCounts counts(const scenes::Scene& scene, std::uint32_t samples = 2,
+                 Integrator integrator = Integrator::path) {
   RenderOptions options{.width = 64, .height = 64, .max_depth = 1};
-  options.integrator = Integrator::path;
+  options.integrator = integrator;
+  if (integrator == Integrator::whitted) {
+    options.max_depth = 4;
+  }
   options.samples = samples;
   return Built(scene, "bvh").render(options).rays;
 }
 
+/// With mirrors and glass, for rays of several bounces that are not drawn by chance.
+scenes::Scene shining(scenes::Scene scene) {
+  scene.materials[0].reflection = 0.3;
+  scene.materials[0].transmission = 0.3;
+  scene.materials[0].ior = 1.5;
+  return scene;
+}
+
+/// All 24 turns that keep the axes.
+std::vector<Placement> right_angles() {
+  std::vector<Placement> turns;
+  for (int first = 0; first < 3; ++first) {
+    for (int second = 0; second < 3; ++second) {
+      for (int signs = 0; first != second && signs < 4; ++signs) {
+        glm::dvec3 x(0.0);
+        glm::dvec3 y(0.0);
+        x[first] = (signs & 1) == 0 ? 1.0 : -1.0;
+        y[second] = (signs & 2) == 0 ? 1.0 : -1.0;
+        turns.push_back({.name = "turn " + std::to_string(turns.size()), .axes = {x, y, glm::cross(x, y)}});
+      }
+    }
+  }
+  return turns;
+}
+
 TEST(MovedScenes, CountsDoNotDependOnOriginScaleOrRightAngles) {
-  std::vector<Placement> placements;
+  std::vector<Placement> placements = right_angles();
   placements.push_back({.name = "moved up a little", .move = {0.0, 0.0, 0.1}});
   placements.push_back({.name = "moved", .move = {0.1, -0.3, 0.7}});
   placements.push_back({.name = "moved far", .move = {1000.0, 1000.0, 1000.0}});
   placements.push_back({.name = "small", .scale = 1e-3});
   placements.push_back({.name = "large and moved", .scale = 7.0, .move = {31.0, 0.0, -13.0}});
-  placements.push_back({.name = "turned by a right angle",
-                        .axes = {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0)}});
   for (const auto& [name, scene] : scenes_of_all_lights()) {
     const RayCounts here = counts(scene);
     for (const Placement& placement : placements) {
       const RayCounts there = counts(placed(scene, placement));
       EXPECT_EQ(there.traced, here.traced) << name << ", " << placement.name;
       EXPECT_EQ(there.hit, here.hit) << name << ", " << placement.name;
+    }
+    if (name == "emitter on the floor") {
+      continue;  // rounding decides which of two surfaces in one place a ray hits: one mirrors, one does not
+    }
+    const RayCounts mirrored = counts(shining(scene), 1, Integrator::whitted);
+    for (const Placement& placement : placements) {
+      const RayCounts there = counts(placed(shining(scene), placement), 1, Integrator::whitted);
+      EXPECT_EQ(there.traced, mirrored.traced) << "mirrors, " << name << ", " << placement.name;
+      EXPECT_EQ(there.hit, mirrored.hit) << "mirrors, " << name << ", " << placement.name;
     }
   }
 }
@@ -150,7 +194,7 @@ TEST(MovedScenes, CountsDoNotDependOnOriginScaleOrRightAngles) {
 // ray through the middle of each pixel, and lights without area.
 TEST(MovedScenes, CountsDoNotDependOnTheMirror) {
   for (const auto& [name, scene] : scenes_of_all_lights()) {
-    if (scene.lights.empty()) {
+    if (scene.materials.size() > 1) {
       continue;
     }
     const RayCounts here = counts(scene, 1);

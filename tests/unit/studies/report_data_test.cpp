@@ -3,12 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "sim/base64.h"
 #include "sim/error.h"
@@ -28,6 +33,7 @@
 #include "studies/tables/result_directory.h"
 #include "studies/tables/run_json.h"
 #include "tests/support/files.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -442,6 +448,71 @@ RunJson whole_result() {
       "per_node": [{"time_ps": {"traversal": 10}},
         {"time_ps": {"traversal": 4, "bank_wait": 1, "transfer": 1, "idle": 4}}]}})"),
           "some/result.json"};
+}
+
+/// Every part of a document, the document itself included, by its path.
+void collect_parts(const Json& part, const Json::json_pointer& path, std::vector<Json::json_pointer>& all) {
+  all.push_back(path);
+  if (part.is_structured()) {  // the only item of anything else is itself
+    for (const auto& [key, value] : part.items()) {
+      collect_parts(value, part.is_array() ? path / std::stoul(key) : path / key, all);
+    }
+  }
+}
+
+// Anybody may have changed the file: each part of it in turn is missing or something else.
+TEST(RunCharts, ShowWhatIsThereOrSayWhatIsWrong) {
+  const Json whole = whole_result().json();
+  std::vector<Json::json_pointer> parts;
+  collect_parts(whole, Json::json_pointer(), parts);
+  const std::vector<Json> others = {nullptr,
+                                    true,
+                                    -1,
+                                    0,
+                                    0.5,
+                                    -0.0,
+                                    1e308,
+                                    18446744073709551615U,
+                                    std::numeric_limits<std::int64_t>::min(),
+                                    "",
+                                    "1e999",
+                                    "\xff\x01",
+                                    "$.x",
+                                    Json::array(),
+                                    Json::array({nullptr, Json::array()}),
+                                    Json::object(),
+                                    Json::object({{"", 1}, {"a.b", {1, 2}}})};
+  std::size_t next = 0;
+  std::size_t refused = 0;
+  const auto try_one = [&](const Json& changed) {
+    ReportData report;
+    try {
+      add_queried(RunJson(changed, "some/result.json"), report);
+    } catch (const sim::UserError& error) {
+      ++refused;
+      EXPECT_TRUE(std::string_view(error.what()).starts_with("some/result.json: ")) << error.what();
+    }
+    for (const ReportChart& chart : report.charts) {
+      (void)script_json(chart.spec);
+    }
+  };
+  const std::size_t step = test::stride(7, 1);
+  for (const Json::json_pointer& part : parts) {
+    if (!part.empty() && next++ % step == 0) {
+      Json changed = whole;
+      Json& parent = changed[part.parent_pointer()];
+      parent.is_array() ? parent.erase(std::stoul(part.back())) : (void)parent.erase(part.back());
+      try_one(changed);
+    }
+    for (const Json& other : others) {
+      if (next++ % step == 0) {
+        Json changed = whole;
+        changed[part] = other;
+        try_one(changed);
+      }
+    }
+  }
+  EXPECT_GT(refused, 0U);
 }
 
 // Names of fields that a specification's channels show, and of those that its transforms make.
