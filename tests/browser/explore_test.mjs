@@ -174,6 +174,57 @@ describe("the page of marti explore", () => {
       await answer_of(page, { "machine.nodes": "2" });
     }));
 
+  it("goes back a move, and forth", () =>
+    withOwnPage("#cache.size=2 KiB", async (page) => {
+      const set = { "cache.size": "2 KiB" };
+      await answer_of(page, set);
+      await page.getByRole("button", { name: "double machine.nodes" }).click();
+      await answer_of(page, { ...set, "machine.nodes": "8" });
+      await control(page, "interconnect.kind").selectOption("crossbar");
+      await answer_of(page, { ...set, "machine.nodes": "8", "interconnect.kind": "crossbar" });
+      // A slide is one move, however many positions it passes.
+      await page.evaluate(() => [9, 10, 12].forEach((nodes) => explore.state.set({ "machine.nodes": String(nodes) })));
+      await answer_of(page, { ...set, "machine.nodes": "12", "interconnect.kind": "crossbar" });
+      for (const settings of [{ "machine.nodes": "8", "interconnect.kind": "crossbar" }, { "machine.nodes": "8" }, {}]) {
+        await page.evaluate(() => history.back());
+        await answer_of(page, { ...set, ...settings });
+        assert.equal(await control(page, "machine.nodes").inputValue(), settings["machine.nodes"] ?? "4");
+        assert.equal(await control(page, "interconnect.kind").inputValue(), settings["interconnect.kind"] ?? "bus");
+      }
+      await page.evaluate(() => history.forward());
+      await answer_of(page, { ...set, "machine.nodes": "8" });
+    }));
+
+  it("finds settings by what they are called and mean", () =>
+    withPage(async (page) => {
+      const search = page.getByRole("searchbox", { name: "Search the settings" });
+      const state = () => page.$$eval("#settings details", (all) => all.map((one) => [one.id, one.open, one.hidden]));
+      const before = await state();
+      const found = async (text) => {
+        await search.fill(text);
+        return page.$$eval(".control", (all) => all.filter((one) => one.checkVisibility()).map((one) => one.querySelector("input, select").id.slice("control-".length)));
+      };
+      assert.deepEqual(await found("l2.si"), ["l2.size"]);
+      assert.ok((await found("CROSSBAR kind")).includes("interconnect.kind"), "choices too");
+      assert.match(await page.locator("#found").textContent(), /^\d+ of \d+ settings$/);
+      assert.deepEqual(await found("no such setting"), []);
+      await search.fill("");
+      assert.deepEqual(await state(), before);
+      assert.equal(await page.locator("#found").textContent(), "");
+    }));
+
+  it("has round numbers at the curve's axis", () =>
+    withOwnPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
+      await page.waitForFunction(() => document.querySelectorAll("#curve circle").length === 3);
+      const ticks = (await page.$$eval("#curve .tick", (all) => all.map(({ textContent, y }) => [Number(textContent), y.baseVal[0].value])));
+      assert.ok(ticks.length >= 3 && ticks.length <= 6, `${ticks.length} ticks`);
+      // They and the points have one scale.
+      const points = await page.$$eval("#curve circle", (all) => all.map(({ dataset, cy }) => [Number(dataset.value), cy.baseVal.value + 4]));
+      const scale = (ticks[0][1] - ticks[1][1]) / ticks[1][0];
+      for (const [value, y] of [...ticks, ...points]) assert.ok(Math.abs(ticks[0][1] - value * scale - y) < 0.5, `${value} at ${y}`);
+      assert.match(ticks[1][0].toExponential(), /^[125]e/);
+    }));
+
   it("saves what marti runs and sweeps", () =>
     withOwnPage("#machine.nodes=6&axis=cache.size&values=512 B,2 KiB", async (page) => {
       const { figures } = await answer_of(page, { "machine.nodes": "6" });

@@ -91,6 +91,28 @@ explore.controls = (() => {
     return details;
   }
 
+  /** Shows the settings with all words of `text` in their names, meanings or choices; all if there is no word. */
+  function search(text) {
+    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    let found = 0;
+    for (const { key, box } of byKey.values()) {
+      const said = [key.name, key.meaning, ...(key.choices ?? [])].join(" ").toLowerCase();
+      box.hidden = !words.every((word) => said.includes(word));
+      found += box.hidden ? 0 : 1;
+    }
+    for (const details of document.querySelectorAll("#settings details")) {
+      details.hidden = !details.querySelector(".control:not([hidden])");
+      if (words.length) {
+        details.dataset.before ??= String(details.open);  // how it was before the search
+        details.open = true;
+      } else if ("before" in details.dataset) {
+        details.open = details.dataset.before === "true";
+        delete details.dataset.before;
+      }
+    }
+    document.getElementById("found").textContent = words.length ? `${found} of ${byKey.size} settings` : "";
+  }
+
   return {
     element,
     scaled,
@@ -102,6 +124,8 @@ explore.controls = (() => {
       for (const [name, of_section] of sections) {
         document.getElementById("settings").append(section(name, keys.sections[name], of_section.map(make)));
       }
+      const box = document.getElementById("search");
+      box.addEventListener("input", () => search(box.value));
     },
     show({ settings }) {
       for (const control of byKey.values()) {

@@ -34,6 +34,14 @@ explore.curve = (() => {
     return settings;
   };
 
+  /** Round numbers from 0 to at most `most`, about four steps: 1, 2 or 5 times a power of ten apart. */
+  function ticks(most) {
+    const exact = most / 4;
+    const power = 10 ** Math.floor(Math.log10(exact));
+    const step = [1, 2, 5, 10].find((times) => times * power >= exact * (1 - 1e-9)) * power;
+    return Array.from({ length: Math.floor(most / step + 1e-9) + 1 }, (_, i) => i * step);
+  }
+
   function draw(state) {
     const axis = axis_of(state);
     const figure = state.figure || "end";
@@ -46,9 +54,10 @@ explore.curve = (() => {
     const y = (value) => height - bottom - (value / most) * (height - bottom - 20);
     const chart = drawn("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${figure} along ${axis}` });
     chart.append(
-      drawn("line", { x1: left, y1: y(0), x2: width, y2: y(0) }),
-      drawn("text", { x: 0, y: y(most) + 4 }, shown(figure, most)),
-      drawn("text", { x: 0, y: y(0) + 4 }, "0"),
+      ...ticks(most).flatMap((value) => [
+        drawn("line", { x1: left - 5, y1: y(value), x2: width, y2: y(value) }),
+        drawn("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end", class: "tick" }, value ? shown(figure, value) : "0"),
+      ]),
       drawn("path", { d: known.map((value, i) => (value === undefined ? "" : `${i && known[i - 1] !== undefined ? "L" : "M"}${x(i)} ${y(value)}`)).join(" ") }),
     );
     values.forEach((value, i) => {
