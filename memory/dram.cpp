@@ -5,7 +5,7 @@
 namespace marti::memory {
 
 Dram::Dram(const DramConfig& config)
-    : clock_(config.period),
+    : clock_(config),
       mapping_(config),
       burst_bytes_(config.burst_bytes),
       burst_ticks_(config.burst_time()),
@@ -15,7 +15,7 @@ Dram::Times Dram::access(Address address, std::uint32_t bytes, bool write, sim::
   const DramRequest request{mapping_.place(address), bursts_of(address, bytes, burst_bytes_), write,
                             clock_.cycle_at(arrival)};
   const DramService service = channels_[request.place.channel].serve(request);
-  return {request.place.channel, clock_.ticks(service.first - 1), clock_.ticks(service.end),
+  return {request.place.channel, clock_.cycle_before(service.first), clock_.ticks(service.end),
           sim::multiply_ticks(burst_ticks_, request.bursts)};
 }
 

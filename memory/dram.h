@@ -16,21 +16,26 @@ namespace marti::memory {
 /// Times of the DRAM's clock in ticks, and back.
 class DramClock {
  public:
-  explicit DramClock(sim::Ticks period) : period_(period), divide_(static_cast<std::uint64_t>(period)) {}
-  /// The first cycle that does not begin before `time`.
+  explicit DramClock(const DramConfig& config)
+      : period_(config.period), steps_(config.steps()), divide_(static_cast<std::uint64_t>(config.period)) {}
+  /// The first cycle that does not begin before `time`, in steps.
   [[nodiscard]] DramCycle cycle_at(sim::Ticks time) const {
     if (time > latest) {
       sim::fail_time_overflow();
     }
-    return static_cast<DramCycle>(divide_(static_cast<std::uint64_t>(time + period_ - 1)));
+    return static_cast<DramCycle>(divide_(static_cast<std::uint64_t>(time + period_ - 1))) * steps_;
   }
-  [[nodiscard]] sim::Ticks ticks(DramCycle cycle) const { return sim::multiply_ticks(period_, cycle); }
+  /// The beginning of the last cycle before a step.
+  [[nodiscard]] sim::Ticks cycle_before(DramCycle step) const { return ticks((step - 1) / steps_ * steps_); }
+  /// The beginning of a step, in whole ticks.
+  [[nodiscard]] sim::Ticks ticks(DramCycle step) const { return sim::multiply_ticks(period_, step) / steps_; }
 
  private:
   // Leaves room for sums of times of commands, and keeps numbers below the 2^62 that a Divider takes.
   static constexpr sim::Ticks latest = std::numeric_limits<sim::Ticks>::max() / 4;
 
   sim::Ticks period_;
+  DramCycle steps_;
   sim::Divider divide_;
 };
 

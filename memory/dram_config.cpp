@@ -12,12 +12,25 @@ namespace marti::memory {
 
 namespace {
 
+constexpr std::array all_times = {
+    &DramTiming::bl,        &DramTiming::cl,          &DramTiming::cwl,       &DramTiming::rcd,
+    &DramTiming::rcd_write, &DramTiming::rp,          &DramTiming::ras,       &DramTiming::rc,
+    &DramTiming::rrd_s,     &DramTiming::rrd_l,       &DramTiming::faw,       &DramTiming::ccd_s,
+    &DramTiming::ccd_l,     &DramTiming::ccd_l_write, &DramTiming::ccd_stack, &DramTiming::wr,
+    &DramTiming::wtr_s,     &DramTiming::wtr_l,       &DramTiming::rtp,       &DramTiming::ppd,
+    &DramTiming::rtw_gap,   &DramTiming::rank_gap,    &DramTiming::refi,      &DramTiming::rfc};
+static_assert(sizeof(DramTiming) == all_times.size() * sizeof(std::int64_t));
+
+// Of commands in halves of a cycle.
+constexpr DramCommandSteps halves = {.activate = 3, .precharge = 1, .column = 2};
+
 [[noreturn]] void refuse(const char* key, const std::string& reason) { throw sim::KeyError(key, reason); }
 
 void check_counts(const DramConfig& config) {
-  const std::array<std::pair<const char*, std::uint32_t>, 7> counts = {
+  const std::array<std::pair<const char*, std::uint32_t>, 8> counts = {
       {{"dram.channels", config.channels},
        {"dram.ranks", config.ranks},
+       {"dram.stacks", config.stacks},
        {"dram.bank_groups", config.bank_groups},
        {"dram.banks", config.banks},
        {"dram.rows", config.rows},
@@ -60,6 +73,9 @@ void check_timing(const DramConfig& config) {
                                          : "dram.twtr_l",
            "must not be less than the time for different bank groups");
   }
+  if (config.stacks > 1 && timing.ccd_stack < timing.ccd_s) {
+    refuse("dram.tccd_stack", "must not be less than the time within a stack");
+  }
   if (timing.ccd_s < timing.bl) {
     refuse("dram.tccd_s", "must be at least the " + std::to_string(timing.bl) +
                               " cycles that one burst has the data bus (dram.tbl)");
@@ -68,15 +84,34 @@ void check_timing(const DramConfig& config) {
 
 }  // namespace
 
+DramCommandSteps DramConfig::command_steps() const {
+  if (!half_cycles) {
+    return {activate_cycles, 1, column_cycles};
+  }
+  const auto whole = [&](std::int64_t length) { return (length + 2 - steps()) / (3 - steps()); };
+  return {whole(halves.activate), whole(halves.precharge), whole(halves.column)};
+}
+
 DramTiming DramConfig::timing_of_commands() const {
+  // In halves of cycles where there are such.
+  const std::int64_t parts = half_cycles ? 2 : 1;
+  const DramCommandSteps lengths = half_cycles ? halves : DramCommandSteps{activate_cycles, 1, column_cycles};
   DramTiming times = timing;
-  times.rcd += activate_cycles - column_cycles;
-  times.rcd_write += activate_cycles - column_cycles;
-  times.rp += 1 - activate_cycles;
-  times.rfc += 1 - activate_cycles;
-  times.ras += activate_cycles - 1;
-  times.rtp += column_cycles - 1;
-  times.wr += column_cycles - 1;
+  times.rc = row_cycle();
+  for (const auto member : all_times) {
+    times.*member *= parts;
+  }
+  times.rcd += lengths.activate - lengths.column;
+  times.rcd_write += lengths.activate - lengths.column;
+  times.rp += lengths.precharge - lengths.activate;
+  times.rfc += lengths.precharge - lengths.activate;
+  times.ras += lengths.activate - lengths.precharge;
+  times.rtp += lengths.column - lengths.precharge;
+  times.wr += lengths.column - lengths.precharge;
+  for (const auto member : all_times) {
+    const std::int64_t part = parts / steps();  // of what a step is
+    times.*member = (times.*member + part - 1) / part;
+  }
   return times;
 }
 

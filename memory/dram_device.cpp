@@ -13,17 +13,19 @@ constexpr DramCycle long_ago = std::numeric_limits<DramCycle>::min() / 4;
 
 DramDevice::DramDevice(const DramConfig& config)
     : timing_(config.timing_of_commands()),
-      activate_cycles_(config.activate_cycles),
-      column_cycles_(config.column_cycles),
-      refresh_later_(config.activate_cycles - 1),
+      lengths_(config.command_steps()),
+      refresh_later_(lengths_.activate - lengths_.precharge),
       settling_(std::max({timing_.rc, timing_.ras + timing_.rp, timing_.rtp + timing_.rp, timing_.rfc,
                           timing_.cwl + timing_.bl + timing_.wr + timing_.rp, timing_.ppd}) +
                 refresh_later_),
       one_data_bus_(!config.pseudo_channels),
       one_command_bus_(!config.two_command_buses),
+      refresh_after_precharge_(config.refresh_after_precharge),
       banks_of_rank_(config.banks_of_rank()),
+      stacks_of_rank_(config.stacks),
       banks_(std::size_t{config.ranks} * config.banks_of_rank()),
-      groups_(std::size_t{config.ranks} * config.bank_groups),
+      groups_(std::size_t{config.ranks} * config.stacks * config.bank_groups),
+      stacks_(std::size_t{config.ranks} * config.stacks),
       ranks_(config.ranks) {
   for (Rank& rank : ranks_) {
     rank.activations.fill(long_ago);
@@ -40,15 +42,19 @@ void DramDevice::issue(DramCommand command, const DramPlace& place, DramCycle cy
     case DramCommand::precharge:
       raise(of(bank.next, DramCommand::activate), cycle + timing_.rp);
       raise(of(ranks_[place.rank].next, DramCommand::precharge), cycle + timing_.ppd);
+      if (refresh_after_precharge_) {
+        raise(ranks_[place.rank].refresh, cycle + timing_.rp + refresh_later_);
+      }
       bank.row = no_row;
       return;
     case DramCommand::read:
     case DramCommand::write:
       issue_column(command, place, cycle);
       if (close) {
-        // The device closes the row as soon as a precharge is allowed: after this access, the writes before
-        // it and the activation.
-        raise(of(bank.next, DramCommand::activate), of(bank.next, DramCommand::precharge) + timing_.rp);
+        // The device closes the row by itself, after this access and the writes before it. How long the row
+        // was open is in the time between two activations of the bank.
+        raise(of(bank.next, DramCommand::activate), bank.recovered + timing_.rp);
+        raise(ranks_[place.rank].refresh, bank.recovered + timing_.rp + refresh_later_);
         bank.row = no_row;
       }
       return;
@@ -75,13 +81,14 @@ void DramDevice::issue_activate(const DramPlace& place, DramCycle cycle) {
   Rank& rank = ranks_[place.rank];
   raise(of(rank.next, DramCommand::activate), cycle + timing_.rrd_s);
   raise(rank.precharge_all, cycle + timing_.ras);
+  raise(rank.refresh, cycle + timing_.rc + refresh_later_);
   // The fifth activation from here must wait for the end of the window that begins with this one.
   rank.activations[rank.oldest] = cycle + timing_.faw;
   rank.oldest = (rank.oldest + 1) % 4;
 }
 
 void DramDevice::issue_column(DramCommand command, const DramPlace& place, DramCycle cycle) {
-  Times& bank = banks_[place.bank].next;
+  Bank& bank = banks_[place.bank];
   Times& group = groups_[place.group];
   const bool write = command == DramCommand::write;
   const DramCommand other = write ? DramCommand::read : DramCommand::write;
@@ -90,10 +97,14 @@ void DramDevice::issue_column(DramCommand command, const DramPlace& place, DramC
   // Data written must not come before data read have left the bus.
   const DramCycle turn_read_to_write = timing_.cl + timing_.bl + timing_.rtw_gap - timing_.cwl;
   if (write) {
-    raise(of(bank, DramCommand::precharge), end + timing_.wr);
     raise(of(group, other), end + timing_.wtr_l);
-  } else {
-    raise(of(bank, DramCommand::precharge), cycle + timing_.rtp);
+  }
+  raise(bank.recovered, write ? end + timing_.wr : cycle + timing_.rtp);
+  raise(of(bank.next, DramCommand::precharge), bank.recovered);
+  if (!write) {
+    for (std::uint32_t i = place.rank * stacks_of_rank_; i < (place.rank + 1) * stacks_of_rank_; ++i) {
+      raise(stacks_[i], i == place.stack ? 0 : cycle + timing_.ccd_stack);
+    }
   }
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     Times& rank = ranks_[i].next;
@@ -148,20 +159,13 @@ DramCycle DramDevice::earliest_precharge_all(std::uint32_t rank) const {
 
 void DramDevice::precharge_all(std::uint32_t rank, DramCycle cycle) {
   raise(of(ranks_[rank].next, DramCommand::precharge), cycle + timing_.ppd);
+  raise(ranks_[rank].refresh, cycle + timing_.rp + refresh_later_);
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     if (banks_[i].row != no_row) {
       raise(of(banks_[i].next, DramCommand::activate), cycle + timing_.rp);
       banks_[i].row = no_row;
     }
   }
-}
-
-DramCycle DramDevice::earliest_refresh(std::uint32_t rank) const {
-  DramCycle cycle = long_ago;
-  for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
-    raise(cycle, of(banks_[i].next, DramCommand::activate) + refresh_later_);
-  }
-  return cycle;
 }
 
 DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool closed) {
@@ -171,10 +175,12 @@ DramCycle DramDevice::refresh_idle(std::uint32_t rank, DramCycle cycle, bool clo
     banks_[i].row = no_row;
     of(banks_[i].next, DramCommand::activate) = start + timing_.rfc;
   }
+  ranks_[rank].refresh = start + timing_.rfc + refresh_later_;
   return start;
 }
 
 void DramDevice::refresh(std::uint32_t rank, DramCycle cycle) {
+  raise(ranks_[rank].refresh, cycle + timing_.rfc + refresh_later_);
   for (std::uint32_t i = rank * banks_of_rank_; i < (rank + 1) * banks_of_rank_; ++i) {
     raise(of(banks_[i].next, DramCommand::activate), cycle + timing_.rfc);
   }

@@ -12,7 +12,7 @@
 
 namespace marti::memory {
 
-/// A time in cycles of the DRAM's clock.
+/// A time in steps of the DRAM's clock: cycles, or halves of them (DramConfig::steps()).
 using DramCycle = std::int64_t;
 
 enum class DramCommand : std::uint8_t { activate, precharge, read, write };
@@ -79,7 +79,7 @@ class DramDevice {
   [[nodiscard]] DramCycle earliest_precharge_all(std::uint32_t rank) const;
   void precharge_all(std::uint32_t rank, DramCycle cycle);
   /// When a rank without open rows may be refreshed.
-  [[nodiscard]] DramCycle earliest_refresh(std::uint32_t rank) const;
+  [[nodiscard]] DramCycle earliest_refresh(std::uint32_t rank) const { return ranks_[rank].refresh; }
   void refresh(std::uint32_t rank, DramCycle cycle);
   /// Closes the rows of a rank, all of whose commands are allowed at `cycle`, and refreshes it: at once if no
   /// row was open or `closed`, else one cycle later at the earliest. Returns the cycle of the refresh.
@@ -100,7 +100,9 @@ class DramDevice {
 
   /// For which a command has its command bus.
   [[nodiscard]] DramCycle bus_cycles(DramCommand command) const {
-    return is_column(command) ? column_cycles_ : command == DramCommand::activate ? activate_cycles_ : 1;
+    return is_column(command)                 ? lengths_.column
+           : command == DramCommand::activate ? lengths_.activate
+                                              : lengths_.precharge;
   }
   /// The cycle after the last data of a column command that is issued at `cycle`.
   [[nodiscard]] DramCycle end_of_data(DramCommand command, DramCycle cycle) const {
@@ -112,6 +114,7 @@ class DramDevice {
   using Times = std::array<DramCycle, 4>;
   struct Bank {
     Times next{};
+    DramCycle recovered = 0;  // from its last read or write: when the row may be closed, as far as these tell
     std::int64_t row = no_row;
   };
   struct Rank {
@@ -119,6 +122,7 @@ class DramDevice {
     std::array<DramCycle, 4> activations{};  // the last four, oldest at `oldest`
     std::uint32_t oldest = 0;
     DramCycle precharge_all = 0;  // allowed from here on, as far as the activations tell
+    DramCycle refresh = 0;        // allowed from here on, if no row is open
   };
 
   static void raise(DramCycle& time, DramCycle to) { time = std::max(time, to); }
@@ -130,15 +134,17 @@ class DramDevice {
   void issue_column(DramCommand command, const DramPlace& place, DramCycle cycle);
 
   DramTiming timing_;
-  DramCycle activate_cycles_;
-  DramCycle column_cycles_;
+  DramCommandSteps lengths_;
   DramCycle refresh_later_;  // than an activation of the bank would be allowed, which is counted from its end
   DramCycle settling_;
   bool one_data_bus_;
   bool one_command_bus_;
+  bool refresh_after_precharge_;
   std::uint32_t banks_of_rank_;
+  std::uint32_t stacks_of_rank_;
   std::vector<Bank> banks_;
   std::vector<Times> groups_;
+  std::vector<DramCycle> stacks_;  // from when on each may be read, as far as reads of other stacks tell
   std::vector<Rank> ranks_;
 };
 
@@ -151,6 +157,8 @@ inline DramCycle DramDevice::earliest(DramCommand command, const DramPlace& plac
   DramCycle cycle = std::max({bank, of(groups_[place.group], command), of(rank.next, command)});
   if (command == DramCommand::activate) {
     cycle = std::max(cycle, rank.activations[rank.oldest]);
+  } else if (command == DramCommand::read) {
+    cycle = std::max(cycle, stacks_[place.stack]);
   }
   return cycle;
 }

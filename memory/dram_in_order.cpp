@@ -11,7 +11,7 @@ DramInOrder::DramInOrder(const DramConfig& config)
       burst_time_(config.burst_time()),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
-      column_cycles_(config.column_cycles),
+      column_cycles_(config.command_steps().column),
       two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
       device_(config),

@@ -15,7 +15,8 @@ namespace marti::memory {
 struct DramPlace {
   std::uint32_t channel = 0;
   std::uint32_t rank = 0;
-  std::uint32_t group = 0;  ///< bank group, counted over all ranks of the channel
+  std::uint32_t stack = 0;  ///< counted over all ranks of the channel
+  std::uint32_t group = 0;  ///< bank group, counted over all stacks of the channel
   std::uint32_t bank = 0;   ///< counted over all ranks and bank groups of the channel
   std::uint32_t row = 0;
 };
@@ -28,9 +29,11 @@ class DramMapping {
   /// Addresses beyond the memory's capacity begin again at its start.
   [[nodiscard]] DramPlace place(Address address) const {
     const std::uint32_t rank = value(DramField::rank, address);
-    const std::uint32_t group = rank * bank_groups_ + value(DramField::bank_group, address);
+    const std::uint32_t stack = rank * stacks_ + value(DramField::stack, address);
+    const std::uint32_t group = stack * bank_groups_ + value(DramField::bank_group, address);
     return {.channel = value(DramField::channel, address),
             .rank = rank,
+            .stack = stack,
             .group = group,
             .bank = group * banks_ + value(DramField::bank, address),
             .row = value(DramField::row, address)};
@@ -62,6 +65,7 @@ class DramMapping {
   }
 
   std::array<Field, dram_field_names.size()> fields_;
+  std::uint32_t stacks_;
   std::uint32_t bank_groups_;
   std::uint32_t banks_;
   std::uint32_t channel_interleave_ = 0;

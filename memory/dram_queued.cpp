@@ -7,7 +7,8 @@
 namespace marti::memory {
 
 DramQueued::DramQueued(const DramConfig& config)
-    : refi_(config.timing.refi),
+    : steps_(config.steps()),
+      refi_(config.timing_of_commands().refi),
       rfc_(config.timing_of_commands().rfc),
       period_(config.period),
       burst_time_(config.burst_time()),
@@ -17,15 +18,18 @@ DramQueued::DramQueued(const DramConfig& config)
       cap_(config.reorder_cap),
       two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
+      second_within_(config.second_activation),
+      clock_tail_(config.data_clock_tail),
       device_(config),
-      refresh_due_(config.timing.refi > 0 ? config.timing.refi : never) {}
+      // With half cycles a refresh falls due half a cycle early.
+      refresh_due_(refi_ > 0 ? refi_ + 1 - steps_ : never) {}
 
 std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address address, std::uint64_t tag,
                                           sim::Ticks known) {
   sim::ensure(request.arrival >= now_, "an access reaches a DRAM channel after a later command");
   if (idle()) {
     catch_up(request.arrival);
-    if (request.bursts == 1) {
+    if (request.bursts == 1 && steps_ == 1 && second_within_ == 0 && clock_tail_ == 0) {
       if (const std::optional<DramDone> done = serve_alone(request, tag, known)) {
         return done;
       }
@@ -33,7 +37,7 @@ std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address ad
   }
   if (!request.write && waits_to_be_written(request, address)) {
     ++statistics_.forwarded;
-    return DramDone{tag, {request.arrival + 1, request.arrival + 1}};
+    return DramDone{tag, {request.arrival + steps_, request.arrival + steps_}};
   }
   settle(request.arrival, true);
   std::uint32_t place = 0;
@@ -55,7 +59,8 @@ std::optional<DramDone> DramQueued::enter(const DramRequest& request, Address ad
     if (burst.write) {
       unwritten_.insert(burst.address);
     }
-    burst.last = i + 1 == request.bursts;
+    burst.line = address;
+    burst.alone = request.bursts == 1;
     before_.push_back(burst);
   }
   // What arrives in a cycle can have a command in the next one at the earliest.
@@ -114,8 +119,8 @@ void DramQueued::fill() {
 void DramQueued::settle(DramCycle cycle, bool asked) {
   if (now_ < cycle) {
     fill();
-    const DramCycle first = now_ + 1;
-    if (first < refresh_due_ && (asked || first < cycle)) {
+    const DramCycle first = std::max(now_, clock_started_) + 1;
+    if (first <= cycle && first < refresh_due_ && (asked || first < cycle)) {
       writing_ = write_mode();
     }
     now_ = cycle;
@@ -131,13 +136,12 @@ void DramQueued::pick_among(const std::vector<Burst>& bursts, Kind kind, DramCyc
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const Burst& burst = bursts[i];
     const DramCommand command = device_.next_command(burst.place, burst.write);
-    const bool blocked = kind == Kind::queue && command == DramCommand::precharge &&
-                         std::any_of(active_.begin(), active_.end(), [&](const Burst& other) {
-                           return other.place.bank == burst.place.bank;
-                         });
+    const bool blocked =
+        (kind == Kind::queue && command == DramCommand::precharge && in_use(burst.place.bank)) ||
+        (command == DramCommand::activate && activating_);
     if (!blocked) {
-      const Pick pick{std::max({from, slot(command), device_.earliest(command, burst.place)}), kind, command,
-                      i};
+      const DramCycle cycle = std::max({from, slot(command), device_.earliest(command, burst.place)});
+      const Pick pick{command == DramCommand::precharge ? cycle : whole(cycle), kind, command, i};
       if (goes_first(pick, best)) {
         best = pick;
       }
@@ -148,22 +152,40 @@ void DramQueued::pick_among(const std::vector<Burst>& bursts, Kind kind, DramCyc
   }
 }
 
+bool DramQueued::in_use(std::uint32_t bank) const {
+  return (activating_ && activating_->place.bank == bank) ||
+         std::any_of(active_.begin(), active_.end(),
+                     [&](const Burst& burst) { return burst.place.bank == bank; });
+}
+
 void DramQueued::pick_refresh(Pick& best) const {
-  const bool in_use = std::any_of(active_.begin(), active_.end(),
-                                  [&](const Burst& burst) { return burst.place.rank == refresh_rank_; });
-  if (in_use) {
+  const auto of_the_rank = [&](const Burst& burst) { return burst.place.rank == refresh_rank_; };
+  if ((activating_ && of_the_rank(*activating_)) ||
+      std::any_of(active_.begin(), active_.end(), of_the_rank)) {
     return;
   }
   const bool open = device_.has_open_row(refresh_rank_);
   const DramCycle allowed =
       open ? device_.earliest_precharge_all(refresh_rank_) : device_.earliest_refresh(refresh_rank_);
-  const DramCycle cycle = std::max({allowed, next_row_, refresh_due_});
+  const DramCycle first = std::max({allowed, next_row_, refresh_due_});
+  const DramCycle cycle = open ? first : whole(first);
   if (cycle < best.cycle) {
     best = {cycle, open ? Kind::precharge_all : Kind::refresh, DramCommand::precharge, 0};
   }
 }
 
 DramQueued::Pick DramQueued::pick() const {
+  const Pick other = pick_other();
+  if (!activating_) {
+    return other;
+  }
+  const DramCycle free = std::max(now_, next_row_);
+  const bool starts_the_clock = is_column(other.command) && other.cycle >= clock_stops_ && clock_tail_ > 0;
+  const bool last = second_by_ <= free || (starts_the_clock && second_by_ <= free + 1);
+  return other.cycle > free || last ? Pick{free, Kind::second_activation, DramCommand::activate, 0} : other;
+}
+
+DramQueued::Pick DramQueued::pick_other() const {
   Pick best;
   pick_among(active_, Kind::active, now_, best);
   Pick queued;
@@ -202,9 +224,14 @@ std::optional<DramDone> DramQueued::step() {
   sim::ensure(cycle != never, "a DRAM channel without an access has no next command");
   const Pick pick = *next_;
   next_.reset();
-  settle(cycle, two_command_buses_ || pick.kind != Kind::active);
+  settle(cycle, two_command_buses_ ||
+                    (pick.kind == Kind::second_activation ? cycle < second_by_ : pick.kind != Kind::active));
   std::optional<DramDone> done;
-  if (pick.kind == Kind::active) {
+  if (pick.kind == Kind::second_activation) {
+    use_slot(DramCommand::activate, cycle);
+    make_active(*activating_);
+    activating_.reset();
+  } else if (pick.kind == Kind::active) {
     done = issue(active_, pick);
   } else if (pick.kind == Kind::queue) {
     done = issue(writing_ ? writes_ : reads_, pick);
@@ -236,26 +263,36 @@ void DramQueued::count_start(DramCycle arrival, DramCommand command, DramCycle c
   count_first(statistics_, command);
   if (stall_begin_ != never) {
     const DramCycle begin = std::max(stall_begin_, arrival);
-    statistics_.refresh_stall += period_ * std::max<DramCycle>(0, std::min(stall_end_, cycle) - begin);
+    statistics_.refresh_stall +=
+        period_ * std::max<DramCycle>(0, std::min(stall_end_, cycle) - begin) / steps_;
     stall_begin_ = never;
   }
 }
 
 void DramQueued::count_queued(DramCycle arrival, DramCycle last) {
-  statistics_.queued += period_ * (last - arrival);
+  statistics_.queued += period_ * (last - arrival) / steps_;
+}
+
+void DramQueued::make_active(const Burst& burst) {
+  const auto older = [](const Burst& a, const Burst& b) { return a.order < b.order; };
+  active_.insert(std::upper_bound(active_.begin(), active_.end(), burst, older), burst);
 }
 
 std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& pick) {
-  use_slot(pick.command, pick.cycle);
+  const bool column = is_column(pick.command);
+  const bool starts_the_clock = column && clock_tail_ > 0 && pick.cycle >= clock_stops_;
+  const DramCycle cycle = pick.cycle + (starts_the_clock ? 1 : 0);
+  clock_started_ = starts_the_clock ? cycle : clock_started_;
+  use_slot(pick.command, cycle);
   Burst& burst = from[pick.index];
   if (!burst.begun) {
     burst.begun = true;
     Access& access = accesses_[burst.access];
-    access.service.first = access.service.first == 0 ? pick.cycle : access.service.first;
-    count_start(access.arrival, pick.command, pick.cycle);
+    access.service.first = access.service.first == 0 ? cycle : access.service.first;
+    count_start(access.arrival, pick.command, cycle);
   }
-  const bool column = is_column(pick.command);
-  device_.issue(pick.command, burst.place, pick.cycle, column && close_ && burst.last);
+  // A read or write behind the command that starts the data clock leaves its row open, as in Ramulator.
+  device_.issue(pick.command, burst.place, cycle, column && close_ && !starts_the_clock && closes_row(burst));
   statistics_.activations += pick.command == DramCommand::activate ? 1 : 0;
   if (pick.command == DramCommand::precharge || (pick.kind == Kind::active && !column)) {
     return std::nullopt;
@@ -268,22 +305,36 @@ std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& 
     }
   }
   if (!column) {
-    const auto older = [](const Burst& a, const Burst& b) { return a.order < b.order; };
-    active_.insert(std::upper_bound(active_.begin(), active_.end(), leaving, older), leaving);
+    if (second_within_ > 0) {
+      activating_ = leaving;
+      second_by_ = cycle + second_within_;
+    } else {
+      make_active(leaving);
+    }
     return std::nullopt;
   }
+  clock_stops_ = std::max(clock_stops_, device_.end_of_data(pick.command, cycle) + clock_tail_);
   if (leaving.write) {
     unwritten_.erase(unwritten_.find(leaving.address));
   }
   statistics_.count_moved(leaving.write, 1, burst_bytes_, burst_time_);
   Access& access = accesses_[leaving.access];
-  access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, pick.cycle));
+  access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, cycle));
   if (--access.left > 0) {
     return std::nullopt;
   }
-  count_queued(access.arrival, pick.cycle);
+  count_queued(access.arrival, cycle);
   unused_.push_back(leaving.access);
   return DramDone{access.tag, access.service};
+}
+
+bool DramQueued::closes_row(const Burst& burst) const {
+  const auto of_this_line = [&](const std::vector<Burst>& bursts) {
+    return std::any_of(bursts.begin(), bursts.end(), [&](const Burst& other) {
+      return other.line == burst.line && other.order != burst.order && !other.alone;
+    });
+  };
+  return burst.alone || !(of_this_line(active_) || of_this_line(reads_) || of_this_line(writes_));
 }
 
 void DramQueued::issue_refresh(const Pick& pick) {
@@ -310,7 +361,7 @@ void DramQueued::catch_up(DramCycle cycle) {
     const DramCycle before = std::max({now_, next_row_, last_refresh_});
     if (more > 0 && refresh_rank_ == 0 && last >= before + device_.settling()) {
       for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
-        last_refresh_ = device_.refresh_idle(rank, last + rank, true);
+        last_refresh_ = device_.refresh_idle(rank, whole(last) + rank * steps_, true);
       }
       next_row_ = last_refresh_ + 1;
       next_column_ = two_command_buses_ ? next_column_ : next_row_;

@@ -48,7 +48,7 @@ class DramQueued {
   std::optional<DramDone> step();
 
   [[nodiscard]] bool idle() const {
-    return reads_.empty() && writes_.empty() && active_.empty() && before_.empty();
+    return reads_.empty() && writes_.empty() && active_.empty() && before_.empty() && !activating_;
   }
   [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
 
@@ -60,7 +60,8 @@ class DramQueued {
     std::uint32_t access = 0;  // place in accesses_
     std::int64_t passed = 0;   // younger bursts that have left the queue before it
     bool write = false;
-    bool last = false;   // of its access
+    Address line = 0;    // the first byte of its access
+    bool alone = false;  // the only burst of its access
     bool begun = false;  // has had a command
   };
   struct Access {
@@ -69,7 +70,7 @@ class DramQueued {
     DramService service;
     std::int64_t left = 0;  // bursts
   };
-  enum class Kind : std::uint8_t { active, queue, precharge_all, refresh };
+  enum class Kind : std::uint8_t { active, queue, precharge_all, refresh, second_activation };
   struct Pick {
     DramCycle cycle = never;
     Kind kind = Kind::queue;
@@ -77,6 +78,8 @@ class DramQueued {
     std::size_t index = 0;  // of the burst
   };
 
+  // The first step from `step` on that begins a cycle.
+  [[nodiscard]] DramCycle whole(DramCycle step) const { return steps_ == 1 ? step : step + (step & 1); }
   [[nodiscard]] DramCycle slot(DramCommand command) const {
     return is_column(command) ? next_column_ : next_row_;
   }
@@ -89,6 +92,11 @@ class DramQueued {
   void pick_among(const std::vector<Burst>& bursts, Kind kind, DramCycle from, Pick& best) const;
   void pick_refresh(Pick& best) const;
   [[nodiscard]] Pick pick() const;
+  // The next command beside that of an activation that has had its first.
+  [[nodiscard]] Pick pick_other() const;
+  // Whether a burst of this bank has opened its row and not yet moved its data.
+  [[nodiscard]] bool in_use(std::uint32_t bank) const;
+  void make_active(const Burst& burst);
   // Issues all commands of an access of one burst to an idle channel, if the last one comes before the next
   // refresh and is known to meet no other access.
   std::optional<DramDone> serve_alone(const DramRequest& request, std::uint64_t tag, sim::Ticks known);
@@ -100,6 +108,10 @@ class DramQueued {
   // Whether writes are to be served, given what waits.
   [[nodiscard]] bool write_mode() const;
   std::optional<DramDone> issue(std::vector<Burst>& from, const Pick& pick);
+  // With closed pages: whether a burst's read or write closes its row. It does if no other burst of the same
+  // line waits in the controller, be it of the same access or of another one; a burst that is a line always
+  // does.
+  [[nodiscard]] bool closes_row(const Burst& burst) const;
   // Counts the first command of a burst of an access that arrived at `arrival`.
   void count_start(DramCycle arrival, DramCommand command, DramCycle cycle);
   // Counts how long an access waited for its last command.
@@ -111,6 +123,7 @@ class DramQueued {
   // Issues the refreshes that were due up to `cycle` while nothing waited.
   void catch_up(DramCycle cycle);
 
+  DramCycle steps_;  // of a cycle
   DramCycle refi_;
   DramCycle rfc_;
   sim::Ticks period_;
@@ -121,11 +134,17 @@ class DramQueued {
   std::int64_t cap_;
   bool two_command_buses_;
   bool close_;
+  DramCycle second_within_;
+  DramCycle clock_tail_;
   DramDevice device_;
   DramStatistics statistics_;
   std::vector<Burst> reads_;
   std::vector<Burst> writes_;
   std::vector<Burst> active_;
+  std::optional<Burst> activating_;  // has had the first command of its activation
+  DramCycle second_by_ = 0;          // the last cycle for the second one
+  DramCycle clock_stops_ = 0;        // from when on the data clock has to be started
+  DramCycle clock_started_ = -1;     // cycle of the last read or write that followed its start
   std::deque<Burst> before_;
   std::unordered_multiset<Address> unwritten_;  // of bursts that wait to be written
   std::vector<Access> accesses_;

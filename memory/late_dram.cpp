@@ -8,7 +8,7 @@ namespace marti::memory {
 
 LateDram::LateDram(const DramConfig& config, const InterconnectSite& site, sim::Ticks notice)
     : site_(site),
-      clock_(config.period),
+      clock_(config),
       notice_(notice),
       mapping_(config),
       burst_bytes_(config.burst_bytes),
@@ -73,7 +73,7 @@ LateAccess LateDram::finished(std::uint32_t channel, const DramDone& done) {
   const std::int64_t bursts =
       forwarded ? 0 : bursts_of(asked.transaction.address, asked.transaction.bytes, burst_bytes_);
   unused_.push_back(done.tag);
-  const sim::Ticks start = clock_.ticks(done.service.first - 1);
+  const sim::Ticks start = clock_.cycle_before(done.service.first);
   banks_[channel].add(sim::multiply_ticks(burst_ticks_, bursts), start - asked.arrival);
   return {asked.transaction, asked.write, asked.arrival, start, clock_.ticks(done.service.end)};
 }

@@ -1,52 +1,54 @@
 #include "processors/energy/energy_presets.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "processors/energy/cacti_rows.h"
 
 namespace marti::processors::energy {
 
 namespace {
 
-// a of the ways, which are read side by side, and b of the wires to and from the arrays, added as p-th
-// powers:
-// ((a ways (line / 64)^d1)^p + (b KiB^q (line / 64)^d2)^p)^(1/p).
-struct Fit {
-  double a;
-  double b;
-  double q;
-  double p;
-  double d1;
-  double d2;
+using Rows = std::span<const CactiRow>;
 
-  [[nodiscard]] double at(const memory::CacheConfig& cache) const {
-    const bool many = cache.ways == memory::full_ways || cache.ways > most_fitted_ways;
-    const double ways = many ? most_fitted_ways : cache.ways;
-    const double line = cache.line / 64.0;
-    const double of_ways = a * ways * std::pow(line, d1);
-    const double of_wires = b * std::pow(static_cast<double>(cache.size) / 1024.0, q) * std::pow(line, d2);
-    return std::pow(std::pow(of_ways, p) + std::pow(of_wires, p), 1.0 / p);
+// The value at x on the line through two points.
+double through(double x0, double y0, double x1, double y1, double x) {
+  return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+}
+
+// The logarithm of a figure of a cache of so many bytes, from caches of one line and one number of ways: on
+// straight lines between logarithms, and beyond the smallest and largest on that through these two.
+double by_size(Rows rows, double CactiRow::*figure, double size) {
+  const auto above = std::ranges::find_if(rows, [&](const CactiRow& row) { return row.size >= size; });
+  const bool beyond = above == rows.begin() || above == rows.end();
+  const CactiRow& low = beyond ? rows.front() : *(above - 1);
+  const CactiRow& high = beyond ? rows.back() : *above;
+  return through(std::log(low.size), std::log(low.*figure), std::log(high.size), std::log(high.*figure),
+                 std::log(size));
+}
+
+// As by_size(), from caches of one line and all numbers of ways.
+double by_ways(Rows rows, double CactiRow::*figure, const memory::CacheConfig& cache) {
+  const auto size = static_cast<double>(cache.size);
+  const double ways =
+      cache.ways == memory::full_ways ? rows.back().ways : std::min(cache.ways, rows.back().ways);
+  double ways_before = 0.0;
+  double before = 0.0;
+  for (;;) {
+    const std::uint32_t next = rows.front().ways;
+    const auto end = std::ranges::find_if(rows, [&](const CactiRow& row) { return row.ways != next; });
+    const double figure_of_next = by_size({rows.begin(), end}, figure, size);
+    if (next >= ways) {
+      return next == ways
+                 ? figure_of_next
+                 : through(std::log(ways_before), before, std::log(next), figure_of_next, std::log(ways));
+    }
+    ways_before = next;
+    before = figure_of_next;
+    rows = {end, rows.end()};
   }
-};
-
-struct CacheFits {
-  Fit read;   // pJ
-  Fit write;  // pJ
-  Fit area;   // um2
-};
-
-// Fitted by least squares of logarithms to 87 caches of 2 KiB to 4 MiB, 1 to 8 ways, lines of 32 and 64 bytes
-// and at least 32 sets, as CACTI gives them (github.com/HewlettPackard/cacti, commit 1ffd8df: cache.cfg with
-// high-performance transistors, ways read side by side, a bus of one line, no error correction). Mean and
-// largest error in percent, 45 nm: read 8 and 29, write 8 and 25, area 9 and 42; 22 nm: read 8 and 34, write
-// 8 and 21, area 11 and 46.
-constexpr std::array<CacheFits, 2> fits = {{
-    {.read = {22.25, 4.131, 0.625, 1.99, 1.65, 0.53},
-     .write = {18.99, 13.23, 0.488, 2.00, 1.65, 0.84},
-     .area = {29630.0, 3530.0, 1.033, 1.183, 1.669, -0.002050}},
-    {.read = {6.764, 1.480, 0.603, 2.42, 1.79, 0.62},
-     .write = {6.122, 3.129, 0.511, 1.89, 1.87, 0.86},
-     .area = {9761.0, 1299.0, 0.9800, 1.616, 2.051, 0.07024}},
-}};
+}
 
 // 45 nm, 0.9 V. Operations of 32 bits, and what an instruction takes beside them (70 pJ): Horowitz,
 // Computing's energy problem, ISSCC 2014, figure 1.1.9: floating-point addition 0.9 pJ, multiplication 3.7,
@@ -60,8 +62,9 @@ constexpr std::array<CacheFits, 2> fits = {{
 // (github.com/umd-memsys/DRAMsim3, DDR4_8Gb_x8_2400.ini): 3.45 nJ to activate and precharge, 2.93 nJ to read
 // and 2.55 nJ to write 64 bytes. Area of a node: SimTRaX's units of 65 nm (adder .003, multiplier .0165,
 // divider .112, integer multiplier .0117 and adder .00066, registers .0148 mm2), times the square of 45 / 65;
-// of a context, its registers. Leakage: the geometric mean over the caches that the fits were made of, at 360
-// K. Horowitz, Keckler and, below, Dally are taken from later papers that quote them, not from the originals.
+// of a context, its registers. Leakage: the geometric mean over 87 of these caches, with lines of 32 and 64
+// bytes, at 360 K. Horowitz, Keckler and, below, Dally are taken from later papers that quote them, not from
+// the originals.
 constexpr machine::EnergyFigures nm45 = {.add = 0.9,
                                          .multiply = 3.7,
                                          .divide = 26.3,
@@ -122,15 +125,19 @@ machine::EnergyFigures energy_figures(machine::EnergyPreset preset) {
   return {};
 }
 
-std::optional<machine::CacheFigures> fitted_cache(machine::EnergyPreset preset,
-                                                  const memory::CacheConfig& cache) {
-  const bool fitted = cache.size >= least_fitted_size && cache.size <= most_fitted_size &&
-                      cache.line >= least_fitted_line && cache.line <= most_fitted_line;
-  if (preset == machine::EnergyPreset::none || !fitted) {
+std::optional<machine::CacheFigures> known_cache(machine::EnergyPreset preset,
+                                                 const memory::CacheConfig& cache) {
+  const auto* const known = std::ranges::find(known_caches, cache.line, &KnownCaches::line);
+  if (preset == machine::EnergyPreset::none || known == known_caches.end() ||
+      cache.size < known->least_size || cache.size > known->most_size) {
     return std::nullopt;
   }
-  const CacheFits& fit = fits.at(preset == machine::EnergyPreset::nm45 ? 0 : 1);
-  return machine::CacheFigures{fit.read.at(cache), fit.write.at(cache), fit.area.at(cache) / 1e6};
+  const Rows all = preset == machine::EnergyPreset::nm45 ? cacti_rows_45nm() : cacti_rows_22nm();
+  const auto [begin, end] = std::ranges::equal_range(all, cache.line, {}, &CactiRow::line);
+  const auto figure = [&, rows = Rows(begin, end)](double CactiRow::*member) {
+    return std::exp(by_ways(rows, member, cache));
+  };
+  return machine::CacheFigures{figure(&CactiRow::read), figure(&CactiRow::write), figure(&CactiRow::area)};
 }
 
 }  // namespace marti::processors::energy

@@ -1,5 +1,6 @@
 #include "processors/energy/energy_units.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -67,30 +68,35 @@ struct NamedCache {
   std::string_view level;  // "l1" or "l2"
 };
 
-// The cache's figures: those that are given, for the others the fit's.
+// The cache's figures: those that are given, for the others those of CACTI's caches.
 machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const NamedCache& named) {
   machine::CacheFigures figures = named.level == "l1" ? energy.figures.l1 : energy.figures.l2;
-  if (figures.read != machine::by_fit && figures.write != machine::by_fit &&
-      figures.area != machine::by_fit) {
+  if (figures.read != machine::by_shape && figures.write != machine::by_shape &&
+      figures.area != machine::by_shape) {
     return figures;
   }
-  const std::optional<machine::CacheFigures> fitted = fitted_cache(energy.preset, named.cache);
-  if (!fitted) {
+  const std::optional<machine::CacheFigures> known = known_cache(energy.preset, named.cache);
+  if (!known) {
     const std::string level = "energy." + std::string(named.level);
-    const bool line = named.cache.line < least_fitted_line || named.cache.line > most_fitted_line;
-    throw sim::KeyError(
-        std::string(line ? named.line_key : named.size_key),
-        "the energy of a cache of " + sim::print_size(static_cast<std::int64_t>(named.cache.size)) +
-            " with lines of " + std::to_string(named.cache.line) +
-            " bytes is not known: it is fitted to caches of " + sim::print_size(least_fitted_size) + " to " +
-            sim::print_size(most_fitted_size) + " with lines of " + std::to_string(least_fitted_line) +
-            " to " + std::to_string(most_fitted_line) + " bytes; give " + level + "_read, " + level +
-            "_write and " + level + "_area");
+    const bool line =
+        std::ranges::find(known_caches, named.cache.line, &KnownCaches::line) == known_caches.end();
+    std::string all;
+    for (const KnownCaches& caches : known_caches) {
+      all += (all.empty() ? "" : ", ") + std::to_string(caches.line) + " bytes of " +
+             sim::print_size(static_cast<std::int64_t>(caches.least_size)) + " to " +
+             sim::print_size(static_cast<std::int64_t>(caches.most_size));
+    }
+    throw sim::KeyError(std::string(line ? named.line_key : named.size_key),
+                        "the energy of a cache of " +
+                            sim::print_size(static_cast<std::int64_t>(named.cache.size)) + " with lines of " +
+                            std::to_string(named.cache.line) +
+                            " bytes is not known: it is of caches with lines of " + all + "; give " + level +
+                            "_read, " + level + "_write and " + level + "_area");
   }
   for (const auto member :
        {&machine::CacheFigures::read, &machine::CacheFigures::write, &machine::CacheFigures::area}) {
-    if (figures.*member == machine::by_fit) {
-      figures.*member = (*fitted).*member;
+    if (figures.*member == machine::by_shape) {
+      figures.*member = (*known).*member;
     }
   }
   return figures;

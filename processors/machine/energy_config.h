@@ -11,14 +11,14 @@ namespace marti::processors::machine {
 enum class EnergyPreset : std::uint8_t { none, nm45, nm22 };
 inline constexpr std::array<std::string_view, 3> energy_preset_names = {"none", "45nm", "22nm"};
 
-/// The value of a cache's figure that is to be taken from the fit for its size, ways and line.
-inline constexpr double by_fit = -1.0;
+/// The value of a cache's figure that is to be taken from what is known of caches of its size, ways and line.
+inline constexpr double by_shape = -1.0;
 
-/// Figures of one level of caches, each at least 0 or by_fit.
+/// Figures of one level of caches, each at least 0 or by_shape.
 struct CacheFigures {
-  double read = by_fit;   ///< pJ to look a line up and read it
-  double write = by_fit;  ///< pJ to bring a line in
-  double area = by_fit;   ///< mm2 of one cache
+  double read = by_shape;   ///< pJ to look a line up and read it
+  double write = by_shape;  ///< pJ to bring a line in
+  double area = by_shape;   ///< mm2 of one cache
 };
 
 /// All at least 0. Of an operation in pJ.

@@ -41,6 +41,7 @@ constexpr std::array times = std::to_array<TimeKey>({
     {"dram.tccd_s", &DramTiming::ccd_s, "cycles between two reads, or two writes, of two bank groups"},
     {"dram.tccd_l", &DramTiming::ccd_l, "cycles between two reads of one bank group"},
     {"dram.tccd_l_write", &DramTiming::ccd_l_write, "cycles between two writes of one bank group"},
+    {"dram.tccd_stack", &DramTiming::ccd_stack, "cycles between two reads of two stacks of a rank"},
     {"dram.twr", &DramTiming::wr, "cycles from the last data written to a precharge"},
     {"dram.twtr_s", &DramTiming::wtr_s, "cycles from the last data written to a read of another bank group"},
     {"dram.twtr_l", &DramTiming::wtr_l, "cycles from the last data written to a read of the same bank group"},
@@ -60,7 +61,8 @@ struct CountKey {
 constexpr std::array counts = std::to_array<CountKey>({
     {"dram.channels", &DramConfig::channels, 256, "channels, each with buses of its own"},
     {"dram.ranks", &DramConfig::ranks, 64, "ranks of a channel"},
-    {"dram.bank_groups", &DramConfig::bank_groups, 64, "bank groups of a rank"},
+    {"dram.stacks", &DramConfig::stacks, 64, "groups of dies of a rank, as the stack IDs of HBM3"},
+    {"dram.bank_groups", &DramConfig::bank_groups, 64, "bank groups of a stack"},
     {"dram.banks", &DramConfig::banks, 64, "banks of a bank group"},
     {"dram.rows", &DramConfig::rows, 1 << 24, "rows of a bank"},
 });
@@ -133,7 +135,7 @@ void declare_dram_keys(sim::Schema& schema) {
   schema.texts(
       "dram.mapping", {"column", "channel", "rank", "bank_group", "bank", "row"},
       "the fields of an address above a burst, from the lowest bits upwards; \"column:3\" is three of "
-      "a field's bits, and the rest may come later");
+      "a field's bits, and the rest may come later; \"stack\" may be left out and then follows the rank");
   schema.integer("dram.tck", -1, {-1, 1'000'000}, "ps",
                  "one cycle of the DRAM's clock; -1 or 0: the preset's");
   for (const CountKey& count : counts) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "processors/energy/dram_energy.h"
 #include "processors/energy/energy_presets.h"
 #include "processors/energy/energy_units.h"
 #include "studies/keys/key_parts.h"
@@ -49,7 +50,8 @@ constexpr std::array<FigureKey, 18> figure_keys = {{
     {"energy.hop_length", &EnergyFigures::hop_length, most_length, "mm",
      "way of each byte over a link of the network"},
     {"energy.memory_access", &EnergyFigures::memory_access, most_of_access, "pJ",
-     "of an access of a bank or a node's own memory beside its bytes: activating and precharging a row"},
+     "of an access of a bank or a node's own memory beside its bytes: activating and precharging a row; "
+     "with memory.model = \"dram\" the preset is dram.preset"},
     {"energy.memory_read", &EnergyFigures::memory_read, most_of_byte, "pJ",
      "of a byte that a memory reads; each read is of a cache line"},
     {"energy.memory_write", &EnergyFigures::memory_write, most_of_byte, "pJ",
@@ -169,6 +171,13 @@ void read_energy(sim::Config& config, processors::machine::MachineConfig& machin
   if (energy.on()) {
     energy.voltage = config.real("energy.voltage");
     energy.figures = processors::energy::energy_figures(energy.preset);
+    if (machine.banks.dram) {
+      const processors::energy::DramEnergy& dram =
+          processors::energy::dram_energy(machine.banks.dram->preset);
+      energy.figures.memory_access = dram.activation;
+      energy.figures.memory_read = dram.read;
+      energy.figures.memory_write = dram.write;
+    }
     FigureReader reader(config, machine);
     for (const FigureKey& key : figure_keys) {
       reader.read(key.name, energy.figures.*key.member);

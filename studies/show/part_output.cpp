@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "memory/dram_presets.h"
+#include "processors/energy/dram_energy.h"
 #include "sim/statistics.h"
 #include "sim/units.h"
 #include "studies/keys/setting_value.h"
@@ -151,6 +153,15 @@ std::string energy_lines(const run::RunResult& result) {
       fmt::format_to(out, "  {:<14}{:>12} {:>8.2f} %\n", part->name,
                      tables::joules(in_joules(energy.*part->member)), share(energy.*part->member, energy));
     }
+  }
+  if (const auto& dram = result.machine.banks.dram) {
+    const processors::machine::EnergyFigures& figures = result.machine.energy.figures;
+    const processors::energy::DramEnergy& known = processors::energy::dram_energy(dram->preset);
+    const bool given = figures.memory_access != known.activation || figures.memory_read != known.read ||
+                       figures.memory_write != known.write;
+    fmt::format_to(out, "  {} takes {:.4g} pJ a row opened, {:.4g} a byte read, {:.4g} a byte written ({})\n",
+                   memory::dram_preset_names.at(dram->preset), figures.memory_access, figures.memory_read,
+                   figures.memory_write, given ? "given by keys" : known.source);
   }
   fmt::format_to(out, "  {:.4g} rays a joule, {:.4g} uJ s, {:.4g} mm2 of nodes and caches\n",
                  result.figure("rays_a_joule").value_or(0.0), result.figure("energy_delay").value_or(0.0),

@@ -136,10 +136,7 @@ inline void assign_memory(const processors::machine::MachineConfig& m, Assignmen
 /// Of a memory made of one of the presets by test::add_random_dram.
 inline void assign_dram(const memory::DramConfig& dram, Assignments& to) {
   to.choose("memory.model", std::array<std::string_view, 2>{"fixed", "dram"}, 1);
-  to.choose("dram.preset", memory::dram_preset_names,
-            dram.two_command_buses   ? 2
-            : dram.column_cycles > 1 ? 1
-                                     : 0);
+  to.choose("dram.preset", memory::dram_preset_names, dram.preset);
   to.choose("dram.policy", memory::dram_policy_names, dram.policy);
   to.choose("dram.page", memory::dram_page_names, dram.page);
   to.set("dram.queue", dram.queue);

@@ -379,7 +379,8 @@ inline void add_random_dram(Random& random, processors::machine::MachineConfig& 
       machine.interconnect.kind == memory::InterconnectKind::ideal || pick(random, 0, 2) > 0) {
     return;
   }
-  memory::DramConfig dram = memory::dram_preset(static_cast<std::size_t>(pick(random, 0, 2)));
+  memory::DramConfig dram = memory::dram_preset(
+      static_cast<std::size_t>(pick(random, 0, static_cast<int>(memory::dram_preset_names.size()) - 1)));
   dram.period = pick(random, 1, 40);
   dram.channels = 1U << pick(random, 0, 2);
   dram.ranks = 1U << pick(random, 0, 1);

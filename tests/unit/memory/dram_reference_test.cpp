@@ -10,6 +10,8 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "memory/dram_presets.h"
 #include "tests/unit/memory/dram_streams.h"
@@ -158,6 +160,62 @@ constexpr auto figures = std::to_array<Figure>({
     {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.7, true, 195.377, 143698, 49094, 50277, 629, 72, 2},
     {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.9, false, 2973.602, 117286, 49086, 50000, 914, 0, 2},
     {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rw9010", 0.5, true, 140.616, 200185, 47734, 50300, 1966, 102, 2},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "mix8020", 0.75, true, 2166.309, 270750, 75539, 4959, 19502, 81, 3},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "onebank", 0, false, 2611.499, 3992778, 50090, 1, 49909, 0, 3},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.4, true, 230.467, 501696, 49555, 1919, 48526, 150, 3},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rw9010", 0.25, true, 152.881, 801037, 48674, 4203, 47123, 240, 3},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "seq", 0.25, false, 38.614, 800893, 99218, 16, 766, 0, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "mix8020", 0.5, true, 20095.117, 442443, 49475, 50525, 0, 132, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "mix8020", 0, true, 326.649, 442179, 49492, 50508, 0, 132, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0, true, 326.275, 441594, 49505, 50495, 0, 132, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, true, 2783.309, 4256265, 49538, 50462, 0, 1276, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.25, true, 112.643, 800943, 49523, 50477, 0, 240, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.25, true, 116.522, 801012, 47628, 50616, 1756, 240, 3},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "seq", 0.75, true, 941525.520, 2149409, 49508, 50492, 0, 644, 3},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "mix8020", 0.5, true, 176.282, 402114, 78755, 2534, 18711, 120, 4},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "onebank", 0, false, 2933.812, 4491871, 50090, 1, 49909, 0, 4},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.25, true, 185.200, 801089, 49501, 3284, 47215, 240, 4},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.75, true, 170943.438, 609231, 49438, 50562, 0, 182, 4},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "seq", 0.25, true, 142402.306, 1085266, 49373, 50627, 0, 325, 4},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "mix8020", 0.5, true, 114692.613, 630574, 49439, 50561, 0, 189, 4},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, false, 2933.812, 4491871, 50090, 49910, 0, 0, 4},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.25, true, 168.574, 801255, 48462, 50589, 949, 240, 4},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "seq", 0.25, true, 81.833, 401981, 96634, 3366, 0, 128, 5},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "mix8020", 0.25, true, 139.037, 402026, 79359, 4362, 16279, 128, 5},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "onebank", 0, true, 2603.442, 3972473, 49782, 405, 49813, 1272, 5},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.25, true, 150.579, 402038, 49559, 4088, 46353, 128, 5},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rw9010", 0.25, true, 166.997, 402048, 48427, 4765, 46808, 128, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rand1G", 0.25, true, 125.077, 402013, 49580, 50291, 129, 128, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "mix8020", 0.25, false, 157.410, 402233, 49993, 50000, 7, 0, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "mix8020", 0, false, 189.840, 230947, 49928, 50000, 72, 0, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, true, 2603.442, 3972473, 49782, 50218, 0, 1272, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, false, 2357.439, 3594137, 50090, 49910, 0, 0, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.75, false, 11090.666, 156264, 49328, 50000, 672, 0, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.25, true, 134.340, 402023, 48228, 50386, 1386, 128, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.25, false, 73.225, 402023, 48725, 50000, 1275, 0, 5},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "seq", 0.5, false, 252661.216, 705431, 50000, 50000, 0, 0, 5},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "mix8020", 0.5, true, 1523.198, 202520, 49600, 858, 49542, 64, 6},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "onebank", 0, true, 2539.621, 3874153, 49783, 398, 49819, 1240, 6},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.5, true, 861.697, 201056, 49537, 930, 49533, 64, 6},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "mix8020", 0.75, false, 74010.990, 281946, 49979, 50001, 20, 0, 6},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, true, 2539.621, 3874153, 49783, 50217, 0, 1240, 6},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.5, false, 118.881, 200128, 49905, 50000, 95, 0, 6},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.25, true, 133.201, 402267, 48244, 50326, 1430, 128, 6},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "seq", 0.5, true, 283792.306, 768071, 49690, 50310, 0, 246, 6},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "onebank", 0, true, 1706.831, 2604574, 49703, 580, 49717, 833, 7},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "rand1G", 0, true, 211.346, 279302, 48871, 1551, 49578, 89, 7},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "rw9010", 0.5, true, 130.720, 402191, 48545, 2470, 48985, 128, 7},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::group_first, "seq", 0, true, 161.269, 214128, 98106, 1094, 800, 68, 7},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "onebank", 0, true, 1706.831, 2604574, 49703, 580, 49717, 833, 7},
+    {DramPolicy::frfcfs, DramPage::open, Mapping::column_first, "rand1G", 0.1, true, 63.706, 2012725, 49671, 9990, 40339, 644, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "onebank", 0, true, 1706.831, 2604574, 49703, 49957, 340, 833, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "rw9010", 0.5, true, 97.378, 401997, 48008, 50288, 1704, 128, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::group_first, "seq", 0, true, 351.228, 498378, 49626, 50374, 0, 159, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "onebank", 0, true, 1706.831, 2604574, 49703, 49957, 340, 833, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0.5, true, 79.320, 402035, 49459, 50263, 278, 128, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rand1G", 0, true, 183.519, 233681, 47360, 50367, 2273, 74, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "rw9010", 0.5, true, 98.231, 402070, 48079, 50309, 1612, 128, 7},
+    {DramPolicy::frfcfs, DramPage::closed, Mapping::column_first, "seq", 0, true, 588.193, 867507, 49810, 50190, 0, 277, 7},
 });
 // clang-format on
 
@@ -198,55 +256,116 @@ TEST_P(Reference, AgreesWithRamulator) {
 
 INSTANTIATE_TEST_SUITE_P(Presets, Reference, testing::ValuesIn(figures));
 
-// One access at a time, each `gap` cycles after the data of the last.
-struct Chain {
-  double mean_cycles = 0.0;
-  DramStatistics counts;
-};
-template <class PlaceOf>
-Chain run_chain(const DramConfig& config, DramCycle gap, std::int64_t bursts, const PlaceOf& place_of) {
-  std::vector<DramInOrder> channels(config.channels, DramInOrder(config));
-  DramCycle now = 0;
-  std::int64_t sum = 0;
-  for (std::uint64_t i = 0; i < 5000; ++i) {
-    const DramPlace place = place_of(i);
-    const DramService service = channels[place.channel].serve({place, bursts, false, now});
-    sum += service.end - now;
-    now = service.end + gap;
-  }
-  Chain chain;
-  chain.mean_cycles = static_cast<double>(sum) / 5000.0;
-  for (const DramInOrder& channel : channels) {
-    sim::merge(chain.counts, channel.statistics());
-  }
-  return chain;
-}
-
-struct IdleFigures {
+// One line at a time, each `gap` cycles after the data of the last.
+struct IdleFigure {
   std::size_t preset;
-  std::int64_t bursts;  // of a line of 64 bytes
-  double hit, conflict, empty;
+  DramPage page;
+  const char* pattern;
+  bool refresh;
+  double mean_cycles;
+  std::int64_t hits, misses, conflicts;
 };
 
-TEST(DramReference, IdleAccessesTakeAsLongAsInRamulator) {
-  for (const IdleFigures& figure :
-       {IdleFigures{0, 1, 26.490, 58.656, 42.918}, IdleFigures{1, 1, 56.216, 132.291, 95.286},
-        IdleFigures{2, 2, 29.967, 62.459, 49.972}}) {
-    DramConfig config = dram_preset(figure.preset);
-    const auto row = [](std::uint32_t number) {
-      DramPlace place;
-      place.row = number;
-      return place;
-    };
-    const double exact = 0.001;
-    const auto same_row = [&](std::uint64_t /*i*/) { return row(0); };
-    EXPECT_NEAR(run_chain(config, 100, figure.bursts, same_row).mean_cycles / figure.hit, 1.0, exact);
-    const auto two_rows = [&](std::uint64_t i) { return row(i % 2); };
-    EXPECT_NEAR(run_chain(config, 100, figure.bursts, two_rows).mean_cycles / figure.conflict, 1.0, exact);
-    config.page = DramPage::closed;
-    EXPECT_NEAR(run_chain(config, 100, figure.bursts, two_rows).mean_cycles / figure.empty, 1.0, exact);
+// clang-format off
+constexpr auto idle_figures = std::to_array<IdleFigure>({
+    {0, DramPage::open, "idle_conflict", false, 52.997, 0, 1, 4999},
+    {0, DramPage::open, "idle_conflict", true, 58.656, 0, 85, 4915},
+    {0, DramPage::open, "idle_hit", false, 21.003, 4999, 1, 0},
+    {0, DramPage::open, "idle_hit", true, 26.490, 4932, 68, 0},
+    {0, DramPage::open, "idle_random", false, 53.061, 2, 16, 4982},
+    {0, DramPage::open, "idle_random", true, 54.165, 2, 454, 4544},
+    {0, DramPage::closed, "idle_empty", false, 37.000, 0, 5000, 0},
+    {0, DramPage::closed, "idle_empty", true, 42.918, 0, 5000, 0},
+    {0, DramPage::closed, "idle_random", false, 38.134, 0, 5000, 0},
+    {0, DramPage::closed, "idle_random", true, 40.025, 0, 5000, 0},
+    {1, DramPage::open, "idle_conflict", true, 132.291, 0, 83, 4917},
+    {1, DramPage::open, "idle_hit", true, 56.216, 4916, 84, 0},
+    {1, DramPage::open, "idle_random", true, 112.360, 2, 1761, 3237},
+    {1, DramPage::closed, "idle_empty", true, 95.286, 0, 5000, 0},
+    {1, DramPage::closed, "idle_random", true, 88.922, 0, 5000, 0},
+    {2, DramPage::open, "idle_conflict", true, 62.459, 5000, 209, 4791},
+    {2, DramPage::open, "idle_hit", true, 29.967, 9833, 167, 0},
+    {2, DramPage::open, "idle_random", true, 48.924, 4978, 1840, 3182},
+    {2, DramPage::closed, "idle_empty", true, 49.972, 4904, 5096, 0},
+    {2, DramPage::closed, "idle_random", true, 40.191, 4971, 5029, 0},
+    {3, DramPage::open, "idle_conflict", true, 96.059, 4999, 295, 4706},
+    {3, DramPage::open, "idle_hit", false, 31.005, 9999, 1, 0},
+    {3, DramPage::open, "idle_hit", true, 38.863, 9791, 209, 0},
+    {3, DramPage::open, "idle_random", false, 84.892, 5002, 16, 4982},
+    {3, DramPage::open, "idle_random", true, 81.685, 4959, 1776, 3265},
+    {3, DramPage::closed, "idle_empty", true, 66.626, 4999, 5001, 0},
+    {3, DramPage::closed, "idle_random", false, 59.247, 5000, 5000, 0},
+    {3, DramPage::closed, "idle_random", true, 64.221, 4952, 5048, 0},
+    {4, DramPage::open, "idle_conflict", false, 90.994, 5000, 1, 4999},
+    {4, DramPage::open, "idle_conflict", true, 101.933, 4925, 228, 4847},
+    {4, DramPage::open, "idle_hit", false, 31.006, 9999, 1, 0},
+    {4, DramPage::open, "idle_random", false, 90.880, 5002, 16, 4982},
+    {4, DramPage::open, "idle_random", true, 86.754, 4954, 1871, 3175},
+    {4, DramPage::closed, "idle_empty", true, 70.900, 4936, 5064, 0},
+    {4, DramPage::closed, "idle_random", true, 68.161, 4949, 5051, 0},
+    {5, DramPage::open, "idle_conflict", false, 83.995, 5000, 1, 4999},
+    {5, DramPage::open, "idle_conflict", true, 101.261, 5000, 161, 4839},
+    {5, DramPage::open, "idle_hit", false, 27.006, 9999, 1, 0},
+    {5, DramPage::open, "idle_hit", true, 38.677, 9888, 112, 0},
+    {5, DramPage::open, "idle_random", false, 83.680, 5000, 64, 4936},
+    {5, DramPage::open, "idle_random", true, 77.540, 4963, 2849, 2188},
+    {5, DramPage::closed, "idle_empty", false, 59.000, 5000, 5000, 0},
+    {5, DramPage::closed, "idle_empty", true, 73.226, 5000, 5000, 0},
+    {5, DramPage::closed, "idle_random", false, 59.190, 5000, 5000, 0},
+    {5, DramPage::closed, "idle_random", true, 65.406, 4973, 5027, 0},
+    {6, DramPage::open, "idle_conflict", false, 83.995, 5000, 1, 4999},
+    {6, DramPage::open, "idle_conflict", true, 94.992, 5000, 156, 4844},
+    {6, DramPage::open, "idle_hit", false, 27.006, 9999, 1, 0},
+    {6, DramPage::open, "idle_random", true, 80.669, 4965, 1899, 3136},
+    {6, DramPage::closed, "idle_empty", false, 59.000, 5000, 5000, 0},
+    {6, DramPage::closed, "idle_random", false, 59.374, 5000, 5000, 0},
+    {6, DramPage::closed, "idle_random", true, 64.099, 4967, 5033, 0},
+    {7, DramPage::open, "idle_conflict", true, 64.439, 4913, 176, 4911},
+    {7, DramPage::open, "idle_hit", true, 30.214, 9791, 209, 0},
+    {7, DramPage::open, "idle_random", true, 54.519, 4953, 1348, 3699},
+    {7, DramPage::closed, "idle_empty", true, 48.746, 4882, 5000, 118},
+    {7, DramPage::closed, "idle_random", true, 43.253, 4972, 5001, 27},
+});
+// clang-format on
+
+class Idle : public testing::TestWithParam<IdleFigure> {};
+
+TEST_P(Idle, AgreesWithRamulator) {
+  const IdleFigure& figure = GetParam();
+  DramConfig config = dram_preset(figure.preset);
+  config.policy = DramPolicy::frfcfs;
+  config.page = figure.page;
+  config.timing.refi = figure.refresh ? config.timing.refi : 0;
+  const std::string pattern = figure.pattern;
+  const DramCycle gap = pattern == "idle_random" ? 0 : 100;
+  const std::int64_t bursts = 64 / config.burst_bytes;
+  const DramMapping mapping(config);
+  test::SplitMix addresses(12345);
+  DramQueued channel(config);
+  DramCycle now = 0;
+  DramCycle sum = 0;
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    DramPlace place;
+    if (pattern == "idle_random") {
+      place = mapping.place(64 * (addresses.next() % ((1U << 30U) / 64)));
+    } else {
+      place.row = pattern == "idle_hit" ? 0 : i % 2;
+    }
+    std::optional<DramDone> done = channel.enter({place, bursts, false, now * config.steps()}, 0, i, 0);
+    while (!done) {
+      done = channel.step();
+    }
+    const DramCycle end = done->service.end / config.steps();
+    sum += end - now;
+    now = end + gap;
   }
+  EXPECT_NEAR(static_cast<double>(sum) / 5000.0, figure.mean_cycles, 0.0006);
+  EXPECT_EQ(channel.statistics().row_hits, figure.hits);
+  EXPECT_EQ(channel.statistics().row_misses, figure.misses);
+  EXPECT_EQ(channel.statistics().row_conflicts, figure.conflicts);
 }
+
+INSTANTIATE_TEST_SUITE_P(Presets, Idle, testing::ValuesIn(idle_figures));
 
 }  // namespace
 }  // namespace marti::memory

@@ -39,7 +39,9 @@ struct StreamAccess {
 
 /// `load` is the part of the peak at which lines arrive at random, one at most in a cycle; 0: all at once.
 struct Stream {
-  std::string pattern;  // seq, rand1G, rw9010 (rand1G, every tenth a write) or onebank
+  // seq, rand1G, randrank (in the whole memory), rw9010 (rand1G, every tenth a write), mix8020 (rand1G, of
+  // whose lines four of five are in groups of four in a row) or onebank.
+  std::string pattern;
   double load = 0.0;
   std::size_t count = 50000;
   std::uint32_t line = 64;
@@ -53,6 +55,7 @@ inline std::vector<StreamAccess> make_stream(const DramConfig& config, const Str
   const double lines_per_cycle =
       static_cast<double>(buses) * config.burst_bytes / (static_cast<double>(config.timing.bl) * stream.line);
   DramCycle now = stream.load > 0.0 ? -1 : 0;
+  std::uint32_t group = 0;  // lines that are left of a group in a row
   std::vector<StreamAccess> accesses;
   for (std::size_t i = 0; i < stream.count; ++i) {
     if (stream.load > 0.0) {
@@ -66,8 +69,22 @@ inline std::vector<StreamAccess> make_stream(const DramConfig& config, const Str
       access.place.row = static_cast<std::uint32_t>(addresses.next() % config.rows);
       access.address = Address{access.place.row} << 32U;
     } else {
-      access.address =
-          stream.line * (stream.pattern == "seq" ? i : addresses.next() % ((1U << 30U) / stream.line));
+      const std::uint64_t range = stream.pattern == "randrank" ? config.capacity() : 1U << 30U;
+      if (stream.pattern == "mix8020") {
+        if (group == 0 && addresses.unit() < 0.5) {
+          group = 4;
+          access.address = stream.line * 4 * (addresses.next() % (range / (stream.line * 4)));
+        } else if (group > 0) {
+          access.address = accesses.back().address + stream.line;
+        } else {
+          group = 1;
+          access.address = stream.line * (addresses.next() % (range / stream.line));
+        }
+        --group;
+      } else {
+        access.address =
+            stream.line * (stream.pattern == "seq" ? i : addresses.next() % (range / stream.line));
+      }
       access.write = stream.pattern == "rw9010" && addresses.unit() < 0.1;
       access.place = mapping.place(access.address);
     }
@@ -117,9 +134,10 @@ inline StreamResult run_queued(const DramConfig& config, const std::vector<Strea
   StreamResult result;
   result.services.resize(accesses.size());
   std::vector<DramQueued> channels(config.channels, DramQueued(config));
+  const DramCycle steps = config.steps();
   const auto note = [&](const std::optional<DramDone>& done) {
     if (done) {
-      result.services[done->tag] = done->service;
+      result.services[done->tag] = {(done->service.first + steps - 1) / steps, done->service.end / steps};
     }
   };
   // When the next access of a channel arrives.
@@ -132,10 +150,11 @@ inline StreamResult run_queued(const DramConfig& config, const std::vector<Strea
   for (std::size_t i = 0; i < accesses.size(); ++i) {
     const StreamAccess& access = accesses[i];
     DramQueued& channel = channels[access.place.channel];
-    while (channel.next() <= access.arrival) {
+    const DramCycle arrival = access.arrival * steps;
+    while (channel.next() <= arrival) {
       note(channel.step());
     }
-    note(channel.enter({access.place, bursts, access.write, access.arrival}, access.address, i, known[i]));
+    note(channel.enter({access.place, bursts, access.write, arrival}, access.address, i, known[i]));
   }
   for (DramQueued& channel : channels) {
     while (!channel.idle()) {

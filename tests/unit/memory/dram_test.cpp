@@ -35,13 +35,14 @@ DramTiming random_timing(Random& random) {
   t.rcd_write = random.pick(2, 12);
   t.rp = random.pick(2, 12);
   t.ras = t.rcd + random.pick(0, 12);
-  t.rc = t.ras + t.rp + random.pick(0, 3);
+  t.rc = t.ras + t.rp + random.pick(-1, 3);
   t.rrd_s = random.pick(1, 6);
   t.rrd_l = t.rrd_s + random.pick(0, 4);
   t.faw = random.pick(4, 40);
   t.ccd_s = t.bl + random.pick(0, 2);
   t.ccd_l = t.ccd_s + random.pick(0, 4);
   t.ccd_l_write = t.ccd_l + random.pick(0, 6);
+  t.ccd_stack = t.ccd_s + random.pick(0, 2);
   t.wr = random.pick(1, 12);
   t.wtr_s = random.pick(1, 5);
   t.wtr_l = t.wtr_s + random.pick(0, 5);
@@ -59,8 +60,10 @@ DramConfig random_config(Random& random) {
   config.timing = random_timing(random);
   config.period = random.pick(1, 2000);
   config.ranks = 1U << random.pick(0, 1);
+  config.stacks = 1U << random.pick(0, 1);
   config.bank_groups = 1U << random.pick(0, 2);
   config.banks = 1U << random.pick(0, 2);
+  config.refresh_after_precharge = random.pick(0, 3) > 0;
   config.rows = 4;
   config.row_bytes = 256;
   config.burst_bytes = 64;
@@ -74,6 +77,7 @@ DramConfig random_config(Random& random) {
     config.timing.ccd_s = std::max(config.timing.ccd_s, config.timing.bl);
     config.timing.ccd_l = std::max(config.timing.ccd_l, config.timing.ccd_s);
     config.timing.ccd_l_write = std::max(config.timing.ccd_l_write, config.timing.ccd_l);
+    config.timing.ccd_stack = std::max(config.timing.ccd_stack, config.timing.ccd_s);
     // Counted from the last cycles of both, an activation comes before its read.
     config.timing.rcd = std::max<std::int64_t>(config.timing.rcd, 2);
   }
@@ -220,13 +224,18 @@ TEST(Dram, IdleLatenciesAreClosedForms) {
     for (const DramPolicy policy : {DramPolicy::fcfs, DramPolicy::frfcfs}) {
       DramConfig config = dram_preset(preset);
       config.policy = policy;
+      // From one whole cycle to the next that may have the command.
+      const auto cycles = [&](std::int64_t steps) { return (steps + config.steps() - 1) / config.steps(); };
       const DramTiming t = config.timing_of_commands();
-      EXPECT_EQ(idle_latency(config, 0), 1 + t.cl + t.bl);
-      EXPECT_EQ(idle_latency(config, -1), 1 + t.rcd + t.cl + t.bl);
-      EXPECT_EQ(idle_latency(config, 1), 1 + t.rp + t.rcd + t.cl + t.bl);
+      const bool starts_the_clock = policy == DramPolicy::frfcfs && config.data_clock_tail > 0;
+      const DramCycle hit = 1 + (starts_the_clock ? 1 : 0) + cycles(t.cl) + cycles(t.bl);
+      EXPECT_EQ(idle_latency(config, 0), hit);
+      EXPECT_EQ(idle_latency(config, -1), hit + cycles(t.rcd));
+      EXPECT_EQ(idle_latency(config, 1), hit + cycles(t.rp) + cycles(t.rcd));
       config.page = DramPage::closed;
-      EXPECT_EQ(idle_latency(config, 0), 1 + t.rcd + t.cl + t.bl);
-      EXPECT_EQ(idle_latency(config, 1), 1 + t.rcd + t.cl + t.bl);
+      // What starts the data clock leaves its row open.
+      EXPECT_EQ(idle_latency(config, 0), hit + (starts_the_clock ? 0 : cycles(t.rcd)));
+      EXPECT_EQ(idle_latency(config, 1), hit + (starts_the_clock ? cycles(t.rp) : 0) + cycles(t.rcd));
     }
   }
 }
@@ -264,7 +273,7 @@ TEST(Dram, RandomRowsOfOneBankTakeTheRowCycle) {
         accesses[i].place.row = static_cast<std::uint32_t>(i);
       }
       const DramTiming t = config.timing_of_commands();
-      const DramCycle cycle = std::max(t.rc, t.ras + t.rp);
+      const DramCycle cycle = page == DramPage::closed ? t.rc : std::max(t.rc, t.ras + t.rp);
       EXPECT_EQ(test::run_stream(config, accesses).last_read, 999 * cycle + 1 + t.rcd + t.cl + t.bl);
     }
   }

@@ -59,6 +59,12 @@ class NaiveDram {
     bool close;
   };
 
+  // From an activation to the next one, if the row was closed as early as possible. One more than tRC is the
+  // rounding of tRAS and tRP by themselves.
+  [[nodiscard]] DramCycle open_and_closed() const {
+    const DramCycle sum = config_.timing.ras + config_.timing.rp;
+    return sum == config_.timing.rc + 1 ? config_.timing.rc : sum;
+  }
   // The least time from an issued command to a new one; negative if there is none.
   [[nodiscard]] DramCycle between(const Issued& a, Kind b, const DramPlace& place) const {
     const bool same_rank = a.place.rank == place.rank;
@@ -80,12 +86,13 @@ class NaiveDram {
     at_least(same_bank && a.kind == wr && b == pre, written + t_.wr);
     // A row is closed before the next activation of its bank: by a precharge, or by the device as soon as one
     // would be allowed.
-    at_least(same_bank && a.kind == act && b == act, t_.ras + t_.rp);
+    at_least(same_bank && a.kind == act && b == act, open_and_closed());
     at_least(same_bank && a.kind == rd && b == act, t_.rtp + t_.rp);
     at_least(same_bank && a.kind == wr && b == act, written + t_.wr + t_.rp);
     // One rank.
     at_least(same_rank && a.kind == act && b == act, same_group ? t_.rrd_l : t_.rrd_s);
     at_least(same_rank && a.kind == rd && b == rd, same_group ? t_.ccd_l : t_.ccd_s);
+    at_least(same_rank && a.kind == rd && b == rd && a.place.stack != place.stack, t_.ccd_stack);
     at_least(same_rank && a.kind == wr && b == wr, same_group ? t_.ccd_l_write : t_.ccd_s);
     at_least(same_rank && a.kind == rd && b == wr, t_.cl + t_.bl + t_.rtw_gap - t_.cwl);
     at_least(same_rank && a.kind == wr && b == rd, written + (same_group ? t_.wtr_l : t_.wtr_s));
@@ -97,10 +104,10 @@ class NaiveDram {
     if (same_rank && b == ref) {
       // Times to an activation are counted to its last cycle, but a refresh has one cycle only.
       const DramCycle later = config_.activate_cycles - 1;
-      at_least(a.kind == act, std::max(t_.rc, t_.ras + t_.rp) + later);
-      at_least(a.kind == pre || a.kind == pre_all, t_.rp + later);
-      at_least(a.kind == rd, t_.rtp + t_.rp + later);
-      at_least(a.kind == wr, written + t_.wr + t_.rp + later);
+      at_least(a.kind == act, std::max(t_.rc, open_and_closed()) + later);
+      at_least(a.kind == pre_all || (a.kind == pre && config_.refresh_after_precharge), t_.rp + later);
+      at_least(a.kind == rd && a.close, t_.rtp + t_.rp + later);
+      at_least(a.kind == wr && a.close, written + t_.wr + t_.rp + later);
     }
     if (same_rank && b == pre_all && open_[a.place.bank] >= 0) {
       at_least(a.kind == rd, t_.rtp);
@@ -159,6 +166,16 @@ class NaiveDram {
     return row == burst.place.row ? (burst.write ? wr : rd) : row < 0 ? act : pre;
   }
 
+  // In order, a row is closed by the last burst of an access. Out of order, by one that finds no other burst
+  // of its access in the controller.
+  [[nodiscard]] bool closes(const Burst& burst) const {
+    return config_.policy == DramPolicy::fcfs
+               ? burst.last
+               : std::none_of(bursts_.begin(), bursts_.end(), [&](const Burst& other) {
+                   return &other != &burst && other.access == burst.access &&
+                          (other.state == Burst::queued || other.state == Burst::active);
+                 });
+  }
   // Issues the burst's next command; returns 1 if that ends it.
   std::size_t advance(Burst& burst) {
     const Kind kind = next_of(burst);
@@ -167,7 +184,7 @@ class NaiveDram {
       service.first = cycle_;
     }
     const bool column = kind == rd || kind == wr;
-    issue(kind, burst.place, column && config_.page == DramPage::closed && burst.last);
+    issue(kind, burst.place, column && config_.page == DramPage::closed && closes(burst));
     if (kind == act) {
       burst.state = Burst::active;
     }

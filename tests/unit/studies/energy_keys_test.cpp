@@ -24,14 +24,14 @@ TEST(EnergyKeys, ReplaceThePresetsFiguresOneByOne) {
       processors::energy::energy_figures(processors::machine::EnergyPreset::nm22);
   const processors::machine::EnergyFigures kept = read_machine_of(preset + "divide = -1.0\n").energy.figures;
   EXPECT_EQ(kept.divide, usual.divide);
-  EXPECT_EQ(kept.l1.read, processors::machine::by_fit);
+  EXPECT_EQ(kept.l1.read, processors::machine::by_shape);
   const processors::machine::EnergyFigures changed =
       read_machine_of(preset + "divide = 0.0\nl1_area = 2.5\nleakage_density = 7\n").energy.figures;
   EXPECT_EQ(changed.divide, 0.0);
   EXPECT_EQ(changed.l1.area, 2.5);
   EXPECT_EQ(changed.leakage_density, 7.0);
   EXPECT_EQ(changed.square_root, usual.square_root);
-  EXPECT_EQ(changed.l1.read, processors::machine::by_fit);
+  EXPECT_EQ(changed.l1.read, processors::machine::by_shape);
   EXPECT_EQ(read_machine_of(preset + "voltage = 0.5\n").energy.voltage, 0.5);
 }
 
