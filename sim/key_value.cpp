@@ -138,7 +138,7 @@ Value convert(const Key& key, const DocumentValue& node, std::string_view place)
       const auto& given = std::get<std::string>(value);
       const auto renamed = std::ranges::find(key.renamed, given, &RenamedChoice::before);
       message += renamed == key.renamed.end() ? did_you_mean(given, key.choices)
-                                              : ", which is \"" + std::string(renamed->now) + "\" now";
+                                              : ", which is \"" + std::string(renamed->now) + "\" here";
     }
     fail_at(place, message);
   }

@@ -41,8 +41,8 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 /// The value as written in a TOML file: `"16 KiB"`, `3`, `0.5`, `true`.
 std::string print_value(ValueType type, const Value& value);
 
-/// A name that a choice had before. It is refused with a message that says the new one, so that no file means
-/// something by it that its reader cannot look up.
+/// A name that a choice had before, or has elsewhere. It is refused with a message that says today's, so that
+/// no file means something by it that its reader cannot look up.
 struct RenamedChoice {
   std::string_view before;
   std::string_view now;

@@ -31,6 +31,7 @@
 #include "sim/work_meter.h"
 #include "studies/cli/command_error.h"
 #include "studies/cli/examples.h"
+#include "studies/cli/option_value.h"
 #include "studies/cli/reference_commands.h"
 #include "studies/cli/shell_completion.h"
 #include "studies/cli/sweep_command.h"
@@ -105,6 +106,30 @@ CLI::Option* add_directory(CLI::App* command, const std::string& option, std::st
   return command->add_option(option, directory, what)->type_name("DIR")->check([](const std::string& name) {
     return name.empty() ? "the name of a directory must not be empty" : "";
   });
+}
+
+sim::Key integer_key(std::int64_t low, std::int64_t high) {
+  sim::Key key;
+  key.type = sim::ValueType::integer;
+  key.minimum = low;
+  key.maximum = high;
+  return key;
+}
+
+sim::Key real_key(double low, double high) {
+  sim::Key key;
+  key.type = sim::ValueType::real;
+  key.minimum = low;
+  key.maximum = high;
+  return key;
+}
+
+// A cost has no largest value.
+void add_budget(CLI::App* command, const std::string& option, std::optional<double>& budget,
+                const std::string& what) {
+  sim::Key key = real_key(0.0, 0.0);
+  key.maximum.reset();
+  takes_value(command->add_option(option, budget, what)->type_name("COST"), key);
 }
 
 void add_page(CLI::App* command, std::string& file, const std::string& what) {
@@ -276,17 +301,17 @@ void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   add_directory(sweep, "-o,--output", arguments.directory, "directory for results.sqlite and points.csv");
-  sweep->add_option("--threads", arguments.threads, "machines timed at a time; 0: as many as there are cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096));
+  takes_value(sweep
+                  ->add_option("--threads", arguments.threads,
+                               "machines timed at a time; 0: as many as there are cores")
+                  ->type_name("N"),
+              integer_key(0, 4096));
   sweep
       ->add_option("--best", arguments.best,
                    "the best machines by this metric and their cost: end, speed_up, efficiency, ...")
       ->type_name("METRIC");
-  sweep
-      ->add_option("--budget,--within", arguments.budget,
-                   "the cost that the best machine may have, by [prices]; --within is its old name")
-      ->type_name("COST");
+  add_budget(sweep, "--budget,--within", arguments.budget,
+             "the cost that the best machine may have, by [prices]; --within is its old name");
   sweep
       ->add_option(
           "--share", arguments.share,
@@ -314,8 +339,11 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   add_assignments(trace, arguments.assignments);
   add_directory(trace, "-o,--output", arguments.directory, "directory for node-00000.din and so on")
       ->required();
-  trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them")
-      ->check(CLI::IsMember({"din"}));
+  sim::Key format;
+  format.type = sim::ValueType::choice;
+  format.choices = {"din"};
+  takes_value(trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them"),
+              format);
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
       ->type_name("NODES")
       ->check([](const std::string& nodes) { return nodes.empty() ? "name at least one node" : ""; });
@@ -377,10 +405,8 @@ void add_report_command(CLI::App& app, report::ReportArguments& arguments) {
   add_page(report, arguments.output, "the page; DIR/report.html or DIR/point-N.html if not given");
   add_directory(report, "--plots", arguments.plots, "directory for every chart as SVG and CSV");
   report->add_flag("--pdf", arguments.pdf, "the plots also as PDF");
-  report
-      ->add_option("--budget", arguments.budget,
-                   "of a sweep: the price that a machine may have; the best within it is named")
-      ->type_name("COST");
+  add_budget(report, "--budget", arguments.budget,
+             "of a sweep: the price that a machine may have; the best within it is named");
   report->callback([&] { report::report_command(arguments, print); });
 }
 
@@ -390,12 +416,12 @@ void add_explore_command(CLI::App& app, explore::ExploreArguments& arguments) {
       "A page on this computer: every setting of a machine is a control, simulated as it is moved");
   add_file(explore, arguments.config)->required();
   add_assignments(explore, arguments.assignments);
-  explore->add_option("--port", arguments.port, "of 127.0.0.1; 0: a free one")
-      ->type_name("N")
-      ->check(CLI::Range(0, 65535));
-  explore->add_option("--for", arguments.seconds, "ends by itself after this time; 0: only when asked to")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6));
+  takes_value(explore->add_option("--port", arguments.port, "of 127.0.0.1; 0: a free one")->type_name("N"),
+              integer_key(0, 65535));
+  takes_value(
+      explore->add_option("--for", arguments.seconds, "ends by itself after this time; 0: only when asked to")
+          ->type_name("SECONDS"),
+      real_key(0.0, 1e6));
   explore->add_flag("--no-browser", arguments.no_browser, "only print the address");
   explore->callback([&] { explore::explore_command(arguments, print); });
 }

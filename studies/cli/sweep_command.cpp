@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 #include <set>
 #include <string>
@@ -77,9 +76,6 @@ std::string said_of_axes(const sweep::SweepReader& reader) {
 void sweep_command(const SweepArguments& arguments, void (*print)(const std::string&)) {
   const sweep::SweepOptions options = options_of(arguments);
   sim::Config config = keys::read_config(sweep::sweep_schema(), arguments.config, arguments.assignments);
-  if (arguments.budget && (!std::isfinite(*arguments.budget) || *arguments.budget < 0.0)) {
-    throw sim::UserError("--budget: must be a cost of at least 0");
-  }
   if (arguments.budget && arguments.best.empty()) {
     throw sim::UserError("--budget: is for the machines of --best METRIC, which is missing");
   }

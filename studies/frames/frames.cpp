@@ -50,6 +50,7 @@ class FramesStudy {
   }
 
   void run() {
+    sim::begin_part(config_.frame.meter, "building, tracing and timing", "frames", sequence_.size());
     sequence_.visit([this](const PosedFrame& pose) { add(pose); });
   }
 
@@ -58,14 +59,11 @@ class FramesStudy {
 
  private:
   void add(const PosedFrame& pose) {
-    sim::WorkMeter* const meter = config_.frame.meter;
-    sim::begin_part(meter, fmt::format("building the tree of frame {}", pose.number));
     FrameTree tree = make_frame_tree(before_ ? &*before_ : nullptr, pose.scene, options_);
     run::refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
     processors::program::RenderOptions options = config_.frame.render;
     options.record = true;
-    options.meter = meter;
-    sim::begin_part(meter, fmt::format("tracing frame {}", pose.number), "rows", options.height);
+    options.meter = &stop_;
     processors::program::Frame frame =
         processors::program::render(pose.scene, *tree.triangles, *tree.octree, options);
     if (config_.verify) {
@@ -79,14 +77,15 @@ class FramesStudy {
     outcome.image_hash = run::image_hash(frame.image);
     outcome.build_seconds = tree.build_seconds;
     outcome.update_seconds = tree.update_seconds;
-    sim::begin_part(meter, fmt::format("timing frame {}", pose.number));
     outcome.ways = ways_.time(*frame.log, tree.update ? &*tree.update : nullptr);
     images_.push_back({fmt::format("frame-{:04}", pose.number), std::move(frame.image)});
     tree.update.reset();
     before_ = std::move(tree);
+    sim::count_step(config_.frame.meter);
   }
 
   const FramesConfig& config_;
+  sim::WorkMeter stop_{config_.frame.meter};  // of a frame's rows, which are not shown
   FrameSequence sequence_;
   accel::OctreeOptions options_;
   FrameWays ways_;

@@ -40,6 +40,14 @@ void read_bvh(const sim::Config& config, accel::BvhOptions& options) {
   }
 }
 
+/// What other programs call these structures.
+constexpr std::array<sim::RenamedChoice, 6> other_structures = {{{"kdtree", "bsp"},
+                                                                 {"kd-tree", "bsp"},
+                                                                 {"kd", "bsp"},
+                                                                 {"uniform", "grid"},
+                                                                 {"aabb", "bvh"},
+                                                                 {"brute", "none"}}};
+
 void read_structure(sim::Config& config, FrameConfig& frame) {
   accel::StructureOptions& options = frame.structure_options;
   frame.structure = config.choice_name("structure.kind");
@@ -135,7 +143,8 @@ void declare_frame_keys(sim::Schema& schema) {
       sim::mapped(accel::structure_kinds(), [&](const std::string_view kind) { return std::string(kind); });
   schema.choice("structure.kind", "octree", kinds,
                 "octree; bsp, a binary tree with the octree's planes; grid of equal cells; bvh, boxes around "
-                "primitives within boxes (docs/internals/bvh.md); or none: every ray tests every primitive");
+                "primitives within boxes (docs/internals/bvh.md); or none: every ray tests every primitive",
+                other_structures);
   schema.integer("structure.max_objects", 8, {1, 1'000'000}, "primitives",
                  "octree and bsp: a node with more than this many is split");
   schema.integer(

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "studies/host/cpu_time.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::progress {
@@ -74,15 +75,38 @@ std::string progress_bar(std::uint64_t done, std::uint64_t of, std::size_t width
 
 ShownMeter::ShownMeter(const sim::WorkMeter& meter) {
   if (errors_go_to_a_terminal()) {
-    line_.emplace(ProgressLine::Options(), [&meter, begin = std::chrono::steady_clock::now()] {
+    const auto text = [&meter, pace = Pace(), begin = std::chrono::steady_clock::now()]() mutable {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-      return meter_text(meter.state(), passed.count());
-    });
+      const sim::WorkMeter::State state = meter.state();
+      return meter_text(state, passed.count(),
+                        pace.left(state, {passed.count(), host::process_cpu_seconds()}));
+    };
+    line_.emplace(ProgressLine::Options(), text);
     at_signal_.emplace([this](int /*signal*/) { line_->end(); }, host::AtSignal::Then::signal);
   }
 }
 
-std::string meter_text(const sim::WorkMeter::State& state, double seconds) {
+std::string left_text(const Duration& left) {
+  return left.seconds < 1.0
+             ? std::string()
+             : fmt::format(", {} left ({} of processor time)", tables::duration_text(left.seconds),
+                           tables::duration_text(left.processor));
+}
+
+Duration Pace::left(const sim::WorkMeter::State& state, const Duration& now) {
+  if (state.part != part_ || state.done < done_) {
+    part_ = state.part;
+    done_ = state.done;
+    first_ = now;
+  }
+  if (state.done == done_ || state.of <= state.done) {
+    return {};
+  }
+  const double times = static_cast<double>(state.of - state.done) / static_cast<double>(state.done - done_);
+  return {times * (now.seconds - first_.seconds), times * (now.processor - first_.processor)};
+}
+
+std::string meter_text(const sim::WorkMeter::State& state, double seconds, const Duration& left) {
   if (state.part.empty()) {
     return "";
   }
@@ -91,8 +115,8 @@ std::string meter_text(const sim::WorkMeter::State& state, double seconds) {
     return fmt::format("{}, {}", state.part, passed);
   }
   const std::uint64_t done = std::min(state.done, state.of);
-  return progress_bar(done, state.of, usual_bar) +
-         fmt::format("{}: {} of {} {}, {}", state.part, done, state.of, state.unit, passed);
+  return progress_bar(done, state.of, usual_bar) + fmt::format("{}: {} of {} {}, {}{}", state.part, done,
+                                                               state.of, state.unit, passed, left_text(left));
 }
 
 }  // namespace marti::studies::progress

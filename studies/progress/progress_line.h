@@ -65,8 +65,33 @@ class ShownMeter {
   std::optional<host::AtSignal> at_signal_;  // takes the line away
 };
 
-/// "[######......] tracing: 120 of 240 rows, 5.0 s": what is done, and how long the work has taken. Without
-/// steps that are counted there is no bar; empty before anything was begun.
-[[nodiscard]] std::string meter_text(const sim::WorkMeter::State& state, double seconds);
+/// How long something takes.
+struct Duration {
+  double seconds = 0.0;  ///< as people wait
+  double processor =
+      0.0;  ///< seconds of processor time: less beside other programs, more with several threads
+};
+
+/// ", 2 min 05 s left (4 min 10 s of processor time)"; empty below a second: an estimate that comes to its
+/// end says nothing.
+[[nodiscard]] std::string left_text(const Duration& left);
+
+/// Says how long the part of a meter takes yet: its steps left take as long as those that it has seen done.
+class Pace {
+ public:
+  /// What is left, `now` after any begin; nothing before a step of the part was seen done.
+  [[nodiscard]] Duration left(const sim::WorkMeter::State& state, const Duration& now);
+
+ private:
+  std::string part_;
+  std::uint64_t done_ = 0;  // when the part was seen first
+  Duration first_;          // when that was
+};
+
+/// "[######......] tracing: 120 of 240 rows, 5.0 s, 15 s left (30 s of processor time)": what is done, how
+/// long the whole work has taken, and what is left of this part. Without steps that are counted there is no
+/// bar; empty before anything was begun.
+[[nodiscard]] std::string meter_text(const sim::WorkMeter::State& state, double seconds,
+                                     const Duration& left = {});
 
 }  // namespace marti::studies::progress

@@ -1,7 +1,6 @@
 #include "studies/report/report_command.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -67,9 +66,6 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   }
   if (arguments.pdf && arguments.plots.empty()) {
     throw sim::UserError("--pdf: goes with --plots DIR, the directory for the files, which is missing");
-  }
-  if (arguments.budget && (!std::isfinite(*arguments.budget) || *arguments.budget < 0.0)) {
-    throw sim::UserError("--budget: must be a cost of at least 0");
   }
   const fs::path file = arguments.output.empty() ? page_of(arguments.directory) : fs::path(arguments.output);
   const ReportData report = read_report(arguments.directory, arguments.budget);

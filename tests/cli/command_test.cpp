@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "tests/cli/printed_json.h"
 #include "tests/support/long_tests.h"
@@ -144,6 +145,26 @@ TEST(Command, UsageErrorsAreTwoAndHelpIsZero) {
   expect_refused("help --nonsense", "--nonsense");
   EXPECT_EQ(marti("-V").output, marti("--version").output);
   EXPECT_EQ(marti("--version").status, 0);
+}
+
+// Wrong values of options are refused as those of keys are.
+TEST(Command, OptionsSayWhatTheyTake) {
+  for (const auto& [arguments, words] : {
+           std::pair{"sweep x.toml -o y --best end --budget cheap",
+                     "--budget=cheap: must be a number, not the text"},
+           {"sweep x.toml -o y --best end --budget -1", "--budget=-1: must be at least 0"},
+           {"sweep x.toml -o y --best end --budget nan", "--budget=nan: must be a number"},
+           {"sweep x.toml -o y --best end --budget 1e999", "--budget=1e999: must be a number"},
+           {"sweep x.toml -o y --threads 1.5", "--threads=1.5: must be an integer, not the real 1.5"},
+           {"sweep x.toml -o y --threads 5000", "--threads=5000: must be 0 to 4096, not 5000"},
+           {"report y --budget 3EUR", "--budget=3EUR: must be a number, not the text"},
+           {"explore x.toml --port many", "--port=many: must be an integer, not the text \"many\""},
+           {"explore x.toml --for long", "--for=long: must be a number, not the text \"long\""},
+           {"trace x.toml -o y --format dni",
+            "--format=dni: must be din, not \"dni\" (did you mean \"din\"?)"},
+       }) {
+    expect_refused(arguments, words);
+  }
 }
 
 TEST(Command, ConfigListsEveryKeyAndTheReferenceIsUpToDate) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "studies/tables/text_units.h"
+#include <algorithm>
+
+#include "studies/host/cpu_time.h"
 
 namespace marti::studies::sweep {
 
@@ -13,13 +15,11 @@ constexpr std::chrono::seconds between_lines(10);
 }  // namespace
 
 std::string progress_text(std::size_t machines_done, std::size_t machines, std::size_t frames_done,
-                          std::size_t frames, std::optional<double> seconds_left, std::size_t width) {
+                          std::size_t frames, const std::optional<progress::Duration>& left,
+                          std::size_t width) {
   std::string text = progress::progress_bar(machines_done, machines, width);
   text += fmt::format("{} of {} machines, {} of {} frames", machines_done, machines, frames_done, frames);
-  if (seconds_left && *seconds_left >= 1.0) {
-    text += ", " + tables::duration_text(*seconds_left) + " left";
-  }
-  return text;
+  return left ? text + progress::left_text(*left) : text;
 }
 
 void Progress::begin(std::size_t machines, std::size_t machines_done, std::size_t frames,
@@ -30,7 +30,8 @@ void Progress::begin(std::size_t machines, std::size_t machines_done, std::size_
     machines_done_ = machines_done;
     frames_ = frames;
     frames_done_ = frames_done;
-    told_ = printed_ = Clock::now();
+    begun_ = told_ = printed_ = Clock::now();
+    processor_begun_ = host::process_cpu_seconds();
   }
   if (options_.terminal && !options_.quiet) {
     line_.emplace(progress::ProgressLine::Options{.out = options_.out, .first = options_.first_bar},
@@ -52,13 +53,15 @@ void Progress::timed(std::int64_t nanoseconds_left) {
 
 void Progress::told(std::int64_t nanoseconds_left, bool last) {
   told_ = Clock::now();
-  seconds_left_ = nanoseconds_left == 0
-                      ? std::nullopt
-                      : std::optional(static_cast<double>(nanoseconds_left) * 1e-9 / options_.workers);
+  left_.reset();
+  if (nanoseconds_left != 0) {
+    const double processor = static_cast<double>(nanoseconds_left) * 1e-9;
+    left_ = progress::Duration{processor / processors(), processor};
+  }
   if (!options_.quiet && !options_.terminal && (last || told_ - printed_ >= between_lines)) {
     printed_ = told_;
     std::fprintf(options_.out, "%s\n",
-                 progress_text(machines_done_, machines_, frames_done_, frames_, seconds_left_, 0).c_str());
+                 progress_text(machines_done_, machines_, frames_done_, frames_, left_, 0).c_str());
     std::fflush(options_.out);
   }
 }
@@ -67,9 +70,22 @@ void Progress::told(std::int64_t nanoseconds_left, bool last) {
 std::string Progress::text(std::size_t width) {
   const std::lock_guard lock(mutex_);
   const std::chrono::duration<double> passed = Clock::now() - told_;
-  const std::optional<double> left =
-      seconds_left_ ? std::optional(*seconds_left_ - passed.count()) : std::nullopt;
+  std::optional<progress::Duration> left = left_;
+  if (left) {
+    left->seconds -= passed.count();
+    left->processor = std::max(0.0, left->processor - passed.count() * processors());
+  }
   return progress_text(machines_done_, machines_, frames_done_, frames_, left, width);
+}
+
+// Beside other programs threads get less than a processor each: as much as until now.
+double Progress::processors() const {
+  constexpr double shortest = 0.2;  // what a shorter time says is chance
+  const std::chrono::duration<double> passed = Clock::now() - begun_;
+  return passed.count() < shortest
+             ? options_.workers
+             : std::clamp((host::process_cpu_seconds() - processor_begun_) / passed.count(), 0.01,
+                          1.0 * options_.workers);
 }
 
 void Progress::end() {

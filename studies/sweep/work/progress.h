@@ -37,6 +37,8 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   [[nodiscard]] std::string text(std::size_t width);
   void told(std::int64_t nanoseconds_left, bool last);
+  /// Seconds of processor time that a second brings.
+  [[nodiscard]] double processors() const;
 
   Options options_;
   std::mutex mutex_;  // of all below but the line
@@ -44,16 +46,18 @@ class Progress {
   std::size_t machines_done_ = 0;
   std::size_t frames_ = 0;
   std::size_t frames_done_ = 0;
-  std::optional<double> seconds_left_;  // estimated when the last frame or machine was done
-  Clock::time_point told_;              // when seconds_left_ was estimated
-  Clock::time_point printed_;           // of the last line where there is no terminal
+  Clock::time_point begun_;
+  double processor_begun_ = 0.0;            // the processor time of this process then
+  std::optional<progress::Duration> left_;  // estimated when the last frame or machine was done
+  Clock::time_point told_;                  // when left_ was estimated
+  Clock::time_point printed_;               // of the last line where there is no terminal
   std::optional<progress::ProgressLine> line_;
 };
 
-/// "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left", with a bar of `width` characters before it, if
-/// that is not 0. What is left is not said below a second: an estimate that comes to its end says nothing.
+/// "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left (4 min 10 s of processor time)", with a bar of
+/// `width` characters before it, if that is not 0.
 [[nodiscard]] std::string progress_text(std::size_t machines_done, std::size_t machines,
                                         std::size_t frames_done, std::size_t frames,
-                                        std::optional<double> seconds_left, std::size_t width);
+                                        const std::optional<progress::Duration>& left, std::size_t width);
 
 }  // namespace marti::studies::sweep

@@ -68,6 +68,25 @@ TEST(ShownMeter, SaysWhatIsDone) {
   // Steps that were not foreseen.
   EXPECT_EQ(meter_text({"timing", "packets", 250, 240}, 65.0),
             "[########################] timing: 240 of 240 packets, 1 min 05 s");
+  EXPECT_EQ(meter_text({"timing machines", "machines", 3, 12}, 5.0, {12.0, 24.0}),
+            "[######..................] timing machines: 3 of 12 machines, 5.0 s, 12.0 s left (24.0 s of "
+            "processor time)");
+}
+
+// Steps that were done before the part was first seen say nothing about its pace, nor do those of other
+// parts.
+TEST(Pace, IsThatOfTheStepsSeenDone) {
+  Pace pace;
+  const auto left = [&pace](std::uint64_t done, Duration now, const char* part = "timing") {
+    return pace.left({part, "machines", done, 12}, now);
+  };
+  EXPECT_EQ(left(4, {10.0, 10.0}).seconds, 0.0);
+  EXPECT_EQ(left(6, {14.0, 18.0}).seconds, 12.0);
+  EXPECT_EQ(left(6, {14.0, 18.0}).processor, 24.0);
+  EXPECT_EQ(left(12, {20.0, 20.0}).seconds, 0.0) << "nothing is left";
+  EXPECT_EQ(left(3, {30.0, 30.0}, "tracing").seconds, 0.0) << "another part";
+  EXPECT_EQ(left(6, {33.0, 31.0}, "tracing").seconds, 6.0);
+  EXPECT_EQ(pace.left({"reading", "", 0, 0}, {40.0, 40.0}).seconds, 0.0) << "what is not counted";
 }
 
 std::string content_of(std::FILE* file) {

@@ -63,9 +63,11 @@ TEST(MemoryGate, WaitsForRoom) {
 }
 
 TEST(Progress, SaysHowFarItIs) {
-  EXPECT_EQ(progress_text(350, 1000, 1, 2, 125.0, 0), "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left");
-  EXPECT_EQ(progress_text(3, 4, 1, 1, 0.9, 0), "3 of 4 machines, 1 of 1 frames") << "never 0 s for long";
-  EXPECT_EQ(progress_text(3, 4, 1, 1, -5.0, 0), "3 of 4 machines, 1 of 1 frames");
+  EXPECT_EQ(progress_text(350, 1000, 1, 2, progress::Duration{125.0, 250.0}, 0),
+            "350 of 1000 machines, 1 of 2 frames, 2 min 05 s left (4 min 10 s of processor time)");
+  EXPECT_EQ(progress_text(3, 4, 1, 1, progress::Duration{0.9, 1.8}, 0), "3 of 4 machines, 1 of 1 frames")
+      << "never 0 s for long";
+  EXPECT_EQ(progress_text(3, 4, 1, 1, progress::Duration{-5.0, 0.0}, 0), "3 of 4 machines, 1 of 1 frames");
   EXPECT_EQ(progress_text(0, 0, 0, 0, std::nullopt, 0), "0 of 0 machines, 0 of 0 frames");
   EXPECT_EQ(progress_text(1, 4, 0, 1, std::nullopt, 8), "[##......] 1 of 4 machines, 0 of 1 frames");
   EXPECT_EQ(progress_text(0, 0, 1, 1, std::nullopt, 2), "[##] 0 of 0 machines, 1 of 1 frames");
