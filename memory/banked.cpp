@@ -30,7 +30,7 @@ void Banked::ask_late(const Transaction& transaction, bool write, sim::Ticks arr
     late_->writes().made(transaction.port, transaction.address);
   } else if (cached(transaction, arrival)) {
     return;
-  } else if (site_.ports == 1) {
+  } else if (site_.ports == 1 && !site_.writes_meanwhile) {
     late_->ask_alone(transaction, arrival, [this](const LateAccess& access) { finish(access); });
     return;
   }

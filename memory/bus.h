@@ -91,7 +91,7 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
     const sim::Ticks sent = add_ticks(start, address_);
     const BankAccess access = banks_.read(transaction.address, transaction.bytes, sent);
     const Pending read = {start - now, access.start - sent, access.ready - access.start, transaction.bytes};
-    if (site_.ports == 1) {
+    if (site_.ports == 1 && !site_.writes_meanwhile) {
       // The one port asks for nothing before its data have come, so nothing can take the bus until then.
       send_data(client, transaction.port, read, access.ready);
     } else {

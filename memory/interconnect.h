@@ -147,6 +147,7 @@ struct InterconnectSite {
   std::uint32_t first_component = 0;  ///< port p's events carry component first_component + p
   std::uint32_t ports = 0;
   std::uint8_t memory_class = 0;
+  bool writes_meanwhile = false;  ///< a port may write while a read of its own is under way
 };
 
 /// The time of every read of an ideal interconnect.

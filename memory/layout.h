@@ -20,6 +20,11 @@ enum class NodeOrder : std::uint8_t { breadth_first, depth_first, treelets };
 inline constexpr std::array<std::string_view, 3> node_order_names = {"breadth_first", "depth_first",
                                                                      "treelets"};
 
+/// How a leaf's primitives are found. list: by a list of references. inline_records: they lie in a row, one
+/// record for each reference, leaf by leaf.
+enum class LeafLayout : std::uint8_t { list, inline_records };
+inline constexpr std::array<std::string_view, 2> leaf_layout_names = {"list", "inline"};
+
 /// Record sizes in bytes, each at least 1.
 struct LayoutConfig {
   std::uint32_t node_bytes = 8;   ///< kind and count in one word, first child or first entry in the other
@@ -33,6 +38,7 @@ struct LayoutConfig {
   std::uint32_t record_alignment = 4;      ///< a power of two
   std::uint32_t section_alignment = 4096;  ///< a power of two; every section starts on a multiple of it
   NodeOrder node_order = NodeOrder::breadth_first;
+  LeafLayout leaf = LeafLayout::list;
   std::uint32_t treelet_bytes = 4096;  ///< the node records of a treelet take at most so many
 
   friend bool operator==(const LayoutConfig&, const LayoutConfig&) = default;

@@ -147,7 +147,9 @@ EnergyUnits energy_units(const machine::MachineConfig& config) {
   const Wide byte_read = whole("memory_read", figures.memory_read, attojoules_a_picojoule);
   const Wide byte_written = whole("memory_write", figures.memory_write, attojoules_a_picojoule);
   units.memory_read = access + line * byte_read;
-  units.memory_write = access + line * byte_written;
+  // Pixels that a SIMT node writes together may fill a line, of which it reads sectors.
+  const Wide written = config.kind == machine::NodeKind::simt ? Wide{config.cache.cache.line} : line;
+  units.memory_write = access + written * byte_written;
   if (config.banks.dram) {
     units.dram_activation = access;
     units.dram_read = config.banks.dram->burst_bytes * byte_read;

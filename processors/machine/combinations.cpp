@@ -23,6 +23,17 @@ constexpr std::array refused = {
         "built in a distributed memory; use \"private\" or \"none\"",
         "build.sharing = \"shared\"",
         [](const MachineConfig& config) { return config.build.sharing == Sharing::shared; }},
+    RefusedPair{Feature::contexts, Feature::simt,
+                "the warps of a SIMT node take the place of contexts; set simt.warps"},
+    RefusedPair{Feature::prefetch, Feature::simt,
+                "these prefetchers look at one step at a time, and a SIMT node takes many at once"},
+    RefusedPair{Feature::building, Feature::simt,
+                "a ray-tracing unit reads a tree and cannot split its branches; build it before the frame"},
+    RefusedPair{Feature::distributed, Feature::simt,
+                "the memory of a node serves one access after the other, and the unit has many under way; "
+                "use \"shared\" or \"replicated\""},
+    RefusedPair{Feature::simt, Feature::moving_rays,
+                "a warp takes packets of pixels, and where rays move nodes take rays one by one"},
     RefusedPair{Feature::distributed, Feature::moving_rays,
                 "in a pipeline the network carries rays, and nodes read a memory that they share; with "
                 "\"space\" each node has its part of the database already"},
@@ -52,6 +63,8 @@ Setting setting_of(const MachineConfig& config, Feature feature) {
       return {"l2.sharing", named(second_level_names, config.l2.sharing)};
     case counting:
       return {key_of(config.count), "true"};
+    case simt:
+      return {"node.kind", named(node_kind_names, config.kind)};
     case moving_rays:
       break;
   }
@@ -82,6 +95,8 @@ bool has(const MachineConfig& config, Feature feature) {
       return config.l2.sharing == SecondLevel::private_caches;
     case counting:
       return config.count.any();
+    case simt:
+      return config.kind == NodeKind::simt;
     case moving_rays:
       return config.scheme != Scheme::image;
   }

@@ -19,9 +19,10 @@ enum class Feature : std::uint8_t {
   distributed,
   private_second_level,
   counting,
+  simt,
   moving_rays,
 };
-inline constexpr std::size_t features = 7;
+inline constexpr std::size_t features = 8;
 
 struct FeatureText {
   std::string_view name;     ///< as the documents call it
@@ -35,6 +36,7 @@ inline constexpr std::array<FeatureText, features> feature_texts = {{
     {"distributed memory", "database.placement = \"distributed\""},
     {"private second level", "l2.sharing = \"private\""},
     {"detailed counting", "count.miss_classes, count.sharing, count.attribution"},
+    {"SIMT nodes", "node.kind = \"simt\""},
     {"rays that move", "machine.scheme = \"pipeline\" or \"space\""},
 }};
 

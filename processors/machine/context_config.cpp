@@ -25,7 +25,8 @@ void check_contexts(const MachineConfig& config) {
       throw sim::KeyError(key, "a node whose own memory has the whole database does not prefetch");
     }
   }
-  if (std::uint64_t{config.all_nodes()} * config.ports_of_node() > most_ports) {
+  if (config.kind == NodeKind::core &&
+      std::uint64_t{config.all_nodes()} * config.ports_of_node() > most_ports) {
     throw sim::KeyError("node.contexts", "nodes with more than 2^28 contexts and prefetches in all");
   }
 }

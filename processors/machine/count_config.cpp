@@ -14,6 +14,12 @@ void check_counting(const MachineConfig& config) {
     throw sim::KeyError("count.miss_classes",
                         "without a cache (cache.organisation) there is nothing to class");
   }
+  if (config.count.miss_classes && config.reference_bytes() != config.cache.cache.line) {
+    throw sim::KeyError(
+        "count.miss_classes",
+        "the classes are of misses of whole lines, and with cache.sector a part of a line misses "
+        "by itself; leave cache.sector out");
+  }
 }
 
 }  // namespace marti::processors::machine

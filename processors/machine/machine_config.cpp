@@ -105,6 +105,7 @@ void check(const MachineConfig& config) {
   }
   check_combinations(config);
   check_contexts(config);
+  check_simt(config);
   check_flow(config);
   if (config.write_buffer == 0 || config.word_bytes == 0) {
     throw sim::KeyError(config.write_buffer == 0 ? "node.write_buffer" : "node.word", "must not be 0");

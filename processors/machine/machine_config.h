@@ -20,6 +20,7 @@
 #include "processors/machine/operation_cycles.h"
 #include "processors/machine/packets.h"
 #include "processors/machine/second_level_config.h"
+#include "processors/machine/simt_config.h"
 #include "sim/time.h"
 
 namespace marti::processors::machine {
@@ -80,6 +81,9 @@ inline constexpr std::array<std::string_view, 2> pixels_names = {"written", "col
 struct MachineConfig {
   std::uint32_t clusters = 1;
   std::uint32_t nodes = 16;  ///< in each cluster
+  NodeKind kind = NodeKind::core;
+  SimtConfig simt;  ///< nodes of kind simt
+  RtUnitConfig rt;  ///< nodes of kind simt
   sim::Clock clock = sim::Clock::from_hertz(33e6);
   OperationCycles operations;
   std::uint32_t word_bytes = 4;  ///< what one load or store moves
@@ -108,13 +112,18 @@ struct MachineConfig {
   EnergyConfig energy;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
-  /// Bytes that one reference reads at most: a cache line, or an interleave of the banks without a cache.
+  /// Bytes that one reference reads at most: a cache line or its sector, or an interleave of the banks
+  /// without a cache.
   [[nodiscard]] std::uint32_t reference_bytes() const {
-    return cache.organisation == CacheOrganisation::none ? banks.interleave : cache.cache.line;
+    if (cache.organisation == CacheOrganisation::none) {
+      return banks.interleave;
+    }
+    return kind == NodeKind::simt && simt.sector != 0 ? simt.sector : cache.cache.line;
   }
-  /// Reads that a node may have outstanding: one for each context and one for each prefetch.
+  /// Reads that a node may have outstanding: one for each context and one for each prefetch, or one for each
+  /// line that a SIMT node may have under way.
   [[nodiscard]] std::uint32_t ports_of_node() const {
-    return contexts + (prefetch.on() ? prefetch.outstanding : 0);
+    return kind == NodeKind::simt ? simt.mshrs : contexts + (prefetch.on() ? prefetch.outstanding : 0);
   }
 };
 

@@ -18,6 +18,7 @@
 #include "processors/walk/context_result.h"
 #include "processors/walk/replay_input.h"
 #include "processors/walk/second_level.h"
+#include "processors/walk/simt_result.h"
 #include "sim/engine.h"
 
 namespace marti::processors::node {
@@ -53,6 +54,8 @@ class NodeArray : public sim::EventHandler {
   [[nodiscard]] virtual walk::CacheCountResult cache_counts() const { return {}; }
   /// After the run: the counts of contexts and prefetches; empty when there are none.
   [[nodiscard]] virtual walk::ContextResult context_result() const { return {}; }
+  /// After the run: the counts of SIMT nodes; empty with others.
+  [[nodiscard]] virtual walk::SimtResult simt_result() const { return {}; }
   /// After the run: the figures of each packet of a sample; empty without a sample.
   [[nodiscard]] virtual std::vector<walk::PacketFigures> packet_figures() const { return {}; }
   /// Host bytes for each simulated node, without its cache tags.

@@ -21,7 +21,9 @@ namespace marti::processors::node {
 /// `Derived` has run(node), which lets a node work until it needs something shared; read_done(node, service);
 /// and for_pixel(cursor), whether the node's present work is for the pixel at its cursor. `Cursor` has time,
 /// word, word_end, writes, x, y and packet. Where a node has several ports (MachineConfig::ports_of_node),
-/// read_done gets the port instead of the node, numbered through all clusters.
+/// read_done gets the port instead of the node, numbered through all clusters. Of a Derived that hands out
+/// packets and takes its steps itself (SIMT nodes) only read_done is used, and room_is_known(node, time)
+/// after expect_room(); its Cursor has only `writes`.
 template <class Derived, class Cursor>
 class PacketNodes : public NodeArray {
  public:
@@ -208,6 +210,15 @@ class PacketNodes : public NodeArray {
     return false;
   }
 
+  // When the write buffer has room for one more write, after `queued` writes that are posted at this instant;
+  // not_known while that is not known, or when these take all of it.
+  [[nodiscard]] sim::Ticks room_at(std::uint32_t node, std::size_t queued) const {
+    const std::size_t depth = input_.config.write_buffer;
+    return queued >= depth ? not_known : writes_[node * depth + (cursors_[node].writes + queued) % depth];
+  }
+  // Has room_is_known(node, time) called when the end of the node's oldest write becomes known.
+  void expect_room(std::uint32_t node) { late_[node].stalled = true; }
+
   // Posts a write for which there is room.
   void make_write(std::uint32_t node, memory::Address address, std::uint32_t bytes) {
     if (!late_.empty()) {
@@ -242,6 +253,8 @@ class PacketNodes : public NodeArray {
     derived().begin_pixel(cursor);
     derived().run(node);
   }
+
+  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
 
   walk::ReplayInput input_;
   sim::Engine& engine_;
@@ -303,7 +316,11 @@ class PacketNodes : public NodeArray {
     writes_[std::size_t{node} * depth + late.oldest] = done;
     late.oldest = late.oldest + 1 == depth ? 0 : late.oldest + 1;
     if (std::exchange(late.stalled, false)) {
-      wait_for_room(node, done);
+      if constexpr (requires { derived().room_is_known(node, done); }) {
+        derived().room_is_known(node, done);
+      } else {
+        wait_for_room(node, done);
+      }
     }
     if (--late_writes_ == 0) {
       derived().writes_are_known();
@@ -315,7 +332,6 @@ class PacketNodes : public NodeArray {
     std::uint32_t oldest = 0;  // the entry of the write buffer whose end becomes known next
     bool stalled = false;      // the node waits for the end of that entry
   };
-  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
 
   walk::PacketMeter meter_;              // on with a sample of packets
   sim::LargeVector<sim::Ticks> writes_;  // when each entry of each node's write buffer is free

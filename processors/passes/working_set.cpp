@@ -156,6 +156,11 @@ void check_working_set(const machine::MachineConfig& config) {
         "to "
         "lines depends on its cache, so one pass cannot tell the misses of another cache");
   }
+  if (config.kind == machine::NodeKind::simt) {
+    throw sim::KeyError("count.working_set",
+                        "in which order the lanes of a SIMT node refer to lines depends on its cache, so one "
+                        "pass cannot tell the misses of another cache; use node.kind = \"core\"");
+  }
   for (const memory::CacheShape& shape : shapes_of(config.cache)) {
     if (shape.sets > 1 && shape.ways > most_counted_ways) {
       throw sim::KeyError("count.working_set",

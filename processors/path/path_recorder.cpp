@@ -23,6 +23,11 @@ sim::Ticks of_memory(const cost::TimeDivision& time) {
 }  // namespace
 
 void check_critical_path(const machine::MachineConfig& config) {
+  if (config.kind == machine::NodeKind::simt) {
+    throw sim::KeyError(key,
+                        "a cycle of a SIMT node has many causes, of which none is recorded; use node.kind = "
+                        "\"core\"");
+  }
   if (config.banks.dram && config.banks.dram->policy == memory::DramPolicy::frfcfs) {
     throw sim::KeyError(key,
                         "with dram.policy = \"frfcfs\" an access waits for whatever is chosen before it, "

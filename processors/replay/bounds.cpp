@@ -141,8 +141,8 @@ void check_bounds(const machine::MachineConfig& config, const MachineResult& res
 
 std::optional<Prediction> predict(const machine::MachineConfig& config, const MachineResult& result) {
   // How long a DRAM bank takes depends on the accesses before, so it is no station with a demand of its own.
-  if (config.ports_of_node() > 1 || config.placement == machine::Placement::distributed ||
-      config.banks.dram) {
+  if (config.ports_of_node() > 1 || config.kind == machine::NodeKind::simt ||
+      config.placement == machine::Placement::distributed || config.banks.dram) {
     return std::nullopt;
   }
   std::optional<Prediction> longest;

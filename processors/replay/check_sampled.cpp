@@ -26,6 +26,9 @@ void check_sampled(const machine::MachineConfig& config) {
       refuse(machine::key_of(config, feature), "one context (node.contexts) and without prefetching");
     }
   }
+  if (config.kind == machine::NodeKind::simt) {
+    refuse("node.kind", "node.kind = \"core\"");
+  }
   if (config.l2.sharing != machine::SecondLevel::none) {
     refuse("l2.sharing", "one level of caches (l2.sharing = \"none\")");
   }

@@ -15,9 +15,11 @@ auto part(const Division& time, cost::Activity activity) {
   return time[static_cast<std::size_t>(activity)];
 }
 
-void check_node(const cost::NodeStatistics& node, sim::Ticks end) {
+void check_node(const cost::NodeStatistics& node, sim::Ticks end, bool simt) {
   walk::require_equal(cost::sum_of(node.time), end, "the activities of a node add up to the frame time");
-  walk::require(node.steps.pixels == node.writes, "finished pixels are pixel writes");
+  walk::require(simt ? node.steps.pixels >= node.writes && (node.steps.pixels == 0) == (node.writes == 0)
+                     : node.steps.pixels == node.writes,
+                "finished pixels are pixel writes, and of a SIMT node one write may have several");
   walk::require(node.steps.sphere_tests + node.steps.cone_tests <= node.steps.tests,
                 "tests of spheres, cylinders and cones are tests");
 }
@@ -59,12 +61,33 @@ void check_contexts(const machine::MachineConfig& config, const MachineResult& r
   }
 }
 
+void check_simt(const program::WorkLog& log, const MachineResult& result) {
+  for (std::size_t node = 0; node < result.simt.nodes.size(); ++node) {
+    const walk::SimtCounts& counts = result.simt.nodes[node];
+    walk::require(counts.joined <= result.nodes[node].references.all_hits(),
+                  "a line that is joined is a hit");
+    walk::require(counts.accesses <= counts.records, "each access has a lane that reads a record");
+    walk::require(counts.rays <= counts.records, "a ray is in the unit to read a record");
+  }
+  if (result.simt.nodes.empty()) {
+    return;
+  }
+  // Of a bvh a leaf that is taken as one voxel has no record.
+  const cost::StepCounts steps = result.steps();
+  const bool leaf_records = !accel::walks_bvh(log.traversal);
+  const std::int64_t most = steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts + steps.lists +
+                            steps.tests + steps.passes;
+  const std::int64_t records = result.simt.counts().records;
+  walk::require(records <= most && records >= most - (leaf_records ? 0 : steps.cuts),
+                "lanes read each record of their rays once");
+}
+
 }  // namespace
 
 void check_conservation(const program::WorkLog& log, const machine::MachineConfig& config,
                         const MachineResult& result) {
   for (const cost::NodeStatistics& node : result.nodes) {
-    check_node(node, result.end);
+    check_node(node, result.end, !result.simt.nodes.empty());
   }
   const cost::StepCounts steps = result.steps();
   if (config.scheme == machine::Scheme::image) {
@@ -106,25 +129,34 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
       "every miss and prefetch that no private second level serves, and every lock, is one read of the "
       "interconnect");
   check_second_level_laws(config, result);
-  walk::check_counts(result.counts, result.references(), result.contexts.counts().issued, result.time());
+  walk::check_counts(result.counts, result.references(), result.contexts.counts().issued, result.time(),
+                     result.simt.nodes.empty());
   // With a replicated database everything is in the nodes' own memories; a second level serves own misses,
   // too.
   if (result.counts.sharing && !own_memories && config.l2.sharing != machine::SecondLevel::private_caches) {
     walk::require(result.counts.own_misses == built.local_misses,
                   "the misses that only one node can have are those of what it has built in its own memory");
   }
-  walk::require(writes == steps.pixels + built.writes,
+  std::int64_t pixel_writes = 0;
+  for (const cost::NodeStatistics& node : result.nodes) {
+    pixel_writes += node.writes;
+  }
+  walk::require(writes == pixel_writes + built.writes,
                 "every pixel and every part of the tree is one write of the interconnect");
   // Posted writes wait too, but the nodes do not.
   const cost::TimeSums time = result.time();
+  // A SIMT node waits in whole cycles.
+  const sim::Sum rounded =
+      result.simt.nodes.empty() ? sim::Sum{0} : sim::Sum{config.clock.period()} * (reads + 1);
   for (const memory::WaitStatistics& waits : result.l2.waits) {
     bank_waits += waits.sum;
   }
-  walk::require(part(time, cost::Activity::interconnect_wait) <= interconnect_waits,
+  walk::require(part(time, cost::Activity::interconnect_wait) <= interconnect_waits + rounded,
                 "nodes wait for the interconnect no longer than its transactions do");
-  walk::require(part(time, cost::Activity::bank_wait) <= bank_waits,
+  walk::require(part(time, cost::Activity::bank_wait) <= bank_waits + rounded,
                 "nodes wait for banks no longer than accesses do");
   check_contexts(config, result);
+  check_simt(log, result);
   if (result.build.sharing != machine::Sharing::given) {
     node::check_build(log, config, result.build);
   }

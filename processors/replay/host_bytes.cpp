@@ -10,6 +10,8 @@
 #include "processors/node/build_result.h"
 #include "processors/node/dynamic_cursor.h"
 #include "processors/node/tree_copies.h"
+#include "processors/simt/lane_walk.h"
+#include "processors/simt/warp.h"
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/log_cursor.h"
 #include "processors/walk/record_places.h"
@@ -79,11 +81,18 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
   const std::uint64_t contexts = machine.ports_of_node() == 1 ? 0
                                                               : config.contexts * bytes_a_context +
                                                                     config.ports_of_node() * bytes_a_port;
+  std::uint64_t warps = 0;
+  if (config.kind == machine::NodeKind::simt) {
+    constexpr std::uint64_t bytes_a_node_at_most = 8192;  // what is due in each cycle, accesses, the rest
+    warps = bytes_a_node_at_most +
+            config.simt.warps * (sizeof(simt::Warp) + 1024 + config.simt.lanes * sizeof(simt::Lane));
+  }
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
   const std::uint64_t events =
       sim::EventQueue::bytes_of_days(std::size_t{config.all_nodes()} * config.ports_of_node());
   return homes + events +
-         config.all_nodes() * (bytes_a_node + contexts + config.write_buffer * sizeof(sim::Ticks) + tags);
+         config.all_nodes() *
+             (bytes_a_node + contexts + warps + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
 std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config) {
@@ -91,11 +100,17 @@ std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConf
   if (config.packets.order != machine::PacketOrder::scanline) {
     bytes += sizeof(std::uint32_t) * machine::packets_of_image(log.width, log.height, config.packets);
   }
-  if (!config.count.any() && config.build.sharing == machine::Sharing::given) {
+  const bool sectors =
+      config.kind == machine::NodeKind::simt && config.reference_bytes() < config.cache.cache.line;
+  if (!config.count.any() && config.build.sharing == machine::Sharing::given && !sectors) {
     return bytes;
   }
   std::optional<walk::TreePlan> plan = walk::tree_plan_of(log, config);
   const memory::Layout layout = walk::layout_of(log, config, plan);
+  if (sectors) {  // a byte for each line of memory
+    bytes += config.all_nodes() * machine::first_level_caches(config.cache).size() *
+             (layout.end() / config.cache.cache.line + 2) * 3 / 2;
+  }
   if (plan) {
     // Counts as of a node above, and one larger cursor for each context.
     const std::uint64_t cursors = config.contexts * (sizeof(node::DynamicCursor) - sizeof(walk::Cursor));

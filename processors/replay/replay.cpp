@@ -13,12 +13,14 @@
 #include "processors/replay/record_laws.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/replay/space.h"
+#include "processors/simt/simt_nodes.h"
 #include "processors/walk/left_out.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/record_places.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/engine.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::processors::replay {
 
@@ -137,7 +139,9 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
-  const std::unique_ptr<node::NodeArray> nodes = node::make_node_array(input, engine, host);
+  const std::unique_ptr<node::NodeArray> nodes = config.kind == machine::NodeKind::simt
+                                                     ? simt::make_simt_nodes(input, engine, host)
+                                                     : node::make_node_array(input, engine, host);
   const Interconnects interconnects = connect_memory(
       config, engine, static_cast<std::uint8_t>(node::EventClass::memory), *nodes, options.path);
   for (const node::EventClass c :
@@ -209,6 +213,13 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
   energy::check_energy(config);
   if (options.sample != nullptr) {
     check_sampled(config);
+  }
+  if (config.kind == machine::NodeKind::simt && log.mailboxes) {
+    throw sim::KeyError("node.kind",
+                        "\"simt\" does not combine with mailboxes: lanes of many rays are in a leaf at once");
+  }
+  if (config.layout.leaf == memory::LeafLayout::inline_records && !accel::walks_bvh(log.traversal)) {
+    throw sim::KeyError("layout.leaf", "\"inline\" is for a bvh; use \"list\"");
   }
   MachineResult result = replay_scheme(log, config, options);
   result.leaf_records = !accel::walks_bvh(log.traversal);

@@ -20,6 +20,7 @@
 #include "processors/walk/left_out.h"
 #include "processors/walk/packet_sample.h"
 #include "processors/walk/second_level.h"
+#include "processors/walk/simt_result.h"
 #include "sim/work_meter.h"
 
 namespace marti::processors::path {
@@ -57,6 +58,7 @@ struct MachineResult {
   node::BuildResult build;                          ///< empty when the tree is given
   flow::FlowResult flow;                            ///< empty with the image scheme
   walk::ContextResult contexts;                     ///< empty with one context and no prefetch
+  walk::SimtResult simt;                            ///< empty with nodes of another kind
   walk::SecondLevelResult l2;                       ///< empty without a second level
   walk::CacheCountResult counts;                    ///< the counts that MachineConfig::count asks for
   std::uint64_t packets = 0;                        ///< number handed out

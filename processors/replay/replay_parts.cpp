@@ -11,9 +11,13 @@ Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& 
   std::vector<memory::Interconnect*> links;
   const std::uint32_t ports = config.nodes * config.ports_of_node();
   for (std::uint32_t cluster = 0; cluster < config.clusters; ++cluster) {
-    const memory::InterconnectSite site = {
-        engine, nodes.client(cluster), static_cast<std::uint8_t>(node::EventClass::reply), cluster * ports,
-        ports,  memory_class};
+    const memory::InterconnectSite site = {engine,
+                                           nodes.client(cluster),
+                                           static_cast<std::uint8_t>(node::EventClass::reply),
+                                           cluster * ports,
+                                           ports,
+                                           memory_class,
+                                           config.kind == machine::NodeKind::simt};
     if (path != nullptr) {
       interconnects.push_back(std::make_unique<path::WatchedMemory>(config, site, *path));
     } else {
@@ -48,6 +52,7 @@ MachineResult common_result(const machine::MachineConfig& config, const sim::Eng
   result.counts = nodes.cache_counts();
   result.build = nodes.build_result();
   result.contexts = nodes.context_result();
+  result.simt = nodes.simt_result();
   result.database_bytes = layout.database_bytes();
   result.copies = config.placement == machine::Placement::replicated ? config.all_nodes() : config.clusters;
   result.events = engine.events();

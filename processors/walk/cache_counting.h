@@ -58,8 +58,9 @@ class CacheCounting {
 };
 
 /// Throws InternalError unless the counts add up to those of the nodes, which have asked for `prefetches`
-/// lines beside their misses.
+/// lines beside their misses. `one_by_one`: a node waits for one read at a time, so that its waits are those
+/// of its reads.
 void check_counts(const CacheCountResult& counts, const cost::ReferenceCounts& references,
-                  std::int64_t prefetches, const cost::TimeSums& time);
+                  std::int64_t prefetches, const cost::TimeSums& time, bool one_by_one = true);
 
 }  // namespace marti::processors::walk

@@ -16,7 +16,7 @@ const char* why_other_nodes(const machine::MachineConfig& config) {
   if (config.build.sharing != machine::Sharing::given) {
     return "the tree is built during the frame";
   }
-  if (config.contexts > 1 || config.prefetch.on()) {
+  if (config.contexts > 1 || config.prefetch.on() || config.kind == machine::NodeKind::simt) {
     return "a node has several reads under way";
   }
   if (config.count.any()) {

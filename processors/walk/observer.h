@@ -24,7 +24,8 @@ namespace marti::processors::walk {
 /// What a node does in a piece of its time. `working` is everything it does by itself: the activities
 /// traversal, intersection, shading, building, cache_access, switching and messaging, and the transfer and
 /// bank_access of its own memory. The others are the activities of the same names
-/// (processors/cost/accounting.h).
+/// (processors/cost/accounting.h). `memory` is only of SIMT nodes: all four activities of reading, of several
+/// lines at once.
 enum class NodeState : std::uint8_t {
   working,
   interconnect_wait,
@@ -35,12 +36,13 @@ enum class NodeState : std::uint8_t {
   message_wait,
   queue_full_wait,
   dispatch_wait,
+  memory,
   idle,
 };
-inline constexpr std::size_t node_states = 10;
+inline constexpr std::size_t node_states = 11;
 inline constexpr std::array<std::string_view, node_states> node_state_names = {
-    "working",   "interconnect_wait", "transfer",        "bank_wait",     "bank_access",
-    "lock_wait", "message_wait",      "queue_full_wait", "dispatch_wait", "idle"};
+    "working",      "interconnect_wait", "transfer",      "bank_wait", "bank_access", "lock_wait",
+    "message_wait", "queue_full_wait",   "dispatch_wait", "memory",    "idle"};
 
 /// The pixel that a piece of time or a miss was for; `none` for work that belongs to no pixel (building
 /// before the frame, waiting for a packet or a ray, idle).

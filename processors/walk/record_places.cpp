@@ -35,15 +35,30 @@ std::uint64_t memory_lines(const machine::MachineConfig& config, const memory::L
   return (plan != nullptr ? plan->end() : layout.end()) / config.reference_bytes() + 1;
 }
 
+std::uint32_t inline_record_bytes(const program::WorkLog& log, const memory::LayoutConfig& layout) {
+  if (log.quadrics.empty()) {
+    return layout.primitive_bytes;
+  }
+  return log.triangles() == 0 ? layout.quadric_bytes : std::max(layout.primitive_bytes, layout.quadric_bytes);
+}
+
 memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
                          std::optional<TreePlan>& plan) {
+  memory::LayoutConfig records = config.layout;
+  const bool inline_records = records.leaf == memory::LeafLayout::inline_records;
+  if (inline_records) {
+    records.primitive_bytes = inline_record_bytes(log, config.layout);
+  }
+  const std::uint64_t entries = log.topology.entries.size();
   const memory::RecordCounts counts = {plan ? plan->initial_nodes() : node_records(log),
-                                       plan ? plan->initial_entries() : log.topology.entries.size(),
-                                       log.primitives,
+                                       plan             ? plan->initial_entries()
+                                       : inline_records ? 0
+                                                        : entries,
+                                       inline_records ? entries : log.primitives,
                                        log.materials,
                                        log.texture_begin.empty() ? 0 : log.texture_begin.back(),
                                        std::uint64_t{log.width} * log.height};
-  const memory::Layout layout(config.layout, counts, log.quadrics.size());
+  const memory::Layout layout(records, counts, inline_records ? 0 : log.quadrics.size());
   const std::uint32_t unit = config.reference_bytes();
   if (plan) {
     plan->place_behind(layout, unit);

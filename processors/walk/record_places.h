@@ -22,6 +22,11 @@ namespace marti::processors::walk {
                                                    const machine::MachineConfig& config,
                                                    std::vector<BranchStart> starts = {});
 
+/// Bytes of each record where the primitives of a leaf lie in a row (LeafLayout::inline_records): as long as
+/// the longest kind of primitive that there is.
+[[nodiscard]] std::uint32_t inline_record_bytes(const program::WorkLog& log,
+                                                const memory::LayoutConfig& layout);
+
 /// The layout of the database's records; sets `plan` to the places of what is built during the frame, behind
 /// them. Throws UserError for a database too large for line numbers.
 [[nodiscard]] memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,

@@ -178,7 +178,7 @@ class StrippedLog::PacketCaches {
 std::string StrippedLog::key_of(const machine::MachineConfig& config) {
   if (config.scheme != machine::Scheme::image || config.build.sharing != machine::Sharing::given ||
       config.cache.organisation == machine::CacheOrganisation::none || config.contexts > 1 ||
-      config.prefetch.on() || config.count.any()) {
+      config.prefetch.on() || config.kind == machine::NodeKind::simt || config.count.any()) {
     return {};
   }
   std::string key;

@@ -72,6 +72,7 @@ void add_build_figures(FigureParts& parts, const MachineResult& r) {
 void add_cache_figures(FigureParts& parts, const MachineResult& r, const MachineTotals& totals) {
   parts.add_all("l2_", "second level", only(!r.l2.caches.empty(), r.l2.counters()));
   parts.add_all("l2_wait_", "waits of hits for lines on their way to a shared second level", totals.l2_waits);
+  parts.add_all("simt_", "SIMT nodes", only(!r.simt.nodes.empty(), r.simt.counts()));
   parts.add_all("contexts_", "all nodes", only(!r.contexts.nodes.empty(), r.contexts.counts()));
 }
 

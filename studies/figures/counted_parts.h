@@ -20,7 +20,7 @@ void add_flow_figures(FigureParts& parts, const processors::machine::MachineConf
                       const processors::replay::MachineResult& result, const MachineTotals& totals);
 /// Of a tree that is built.
 void add_build_figures(FigureParts& parts, const processors::replay::MachineResult& result);
-/// Of the second level, of contexts and prefetching.
+/// Of the second level, of SIMT nodes, of contexts and prefetching.
 void add_cache_figures(FigureParts& parts, const processors::replay::MachineResult& result,
                        const MachineTotals& totals);
 /// What is counted only when it is asked for.

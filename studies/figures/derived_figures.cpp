@@ -127,6 +127,27 @@ void add_memory(std::vector<FigureEntry>& all) {
       of_links("network"));
   add("hops_a_message", "1", "links that a message crosses", Better::lower,
       own("network_hops") / own("network_messages"));
+  // The lanes that have something to do, of all ten states.
+  Formula with_work = own("simt_lanes_shading");
+  for (const std::string state : {"slot", "unit", "scheduler", "cache", "memory", "box", "primitive"}) {
+    with_work = with_work + own("simt_lanes_" + state);
+  }
+  add("simt_efficiency", "fraction",
+      "SIMT nodes: of the cycles of lanes of warps with a packet, those in which a lane is neither held by "
+      "its "
+      "warp nor without a pixel",
+      Better::higher, with_work / (with_work + own("simt_lanes_held") + own("simt_lanes_empty")));
+  add("simt_lanes_an_access", "1", "SIMT nodes: lanes that share an access to a record", Better::higher,
+      own("simt_records") / own("simt_accesses"));
+  add("simt_mean_lines", "1", "SIMT nodes: mean number of lines that a node has under way", Better::neither,
+      own("simt_line_cycles") / own("simt_cycles"));
+  add("simt_mean_warps", "1", "SIMT nodes: mean number of warps in a ray-tracing unit", Better::neither,
+      own("simt_unit_cycles") / own("simt_cycles"));
+  add("simt_full_share", "fraction",
+      "SIMT nodes: of the cycles, those in which a look-up found no register for its line", Better::lower,
+      own("simt_full_cycles") / own("simt_cycles"));
+  add("simt_ray_latency", "cycle", "SIMT nodes: mean cycles from a ray's wish to be traced to its end",
+      Better::lower, own("simt_ray_cycles") / own("simt_rays"));
   for (const std::string what : {"interconnect", "bank", "network"}) {
     add("mean_" + what + "_wait", "ps", "mean of the waits, those of no length included", Better::lower,
         own(what + "_wait_sum") / own(what + "_wait_count"));

@@ -66,6 +66,7 @@ Resource fewer(const Changer& changer, Part part, std::string_view key, std::int
 namespace {
 
 using processors::machine::MachineConfig;
+using processors::machine::NodeKind;
 using processors::machine::Placement;
 using processors::machine::Scheme;
 using processors::machine::Sharing;
@@ -91,9 +92,10 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   resources.push_back(std::move(nodes));
   if (image) {
     resources.push_back(more(changer, Part::queues, "node.write_buffer"));
-    // A longer buffer changes nothing then. A node with several contexts may do something else while one of
-    // them waits.
-    resources.back().same_frame = machine.contexts == 1 && !facts.writes_waited;
+    // A longer buffer changes nothing then. A node with several contexts or warps may do something else while
+    // one of them waits.
+    resources.back().same_frame =
+        machine.contexts == 1 && machine.kind == NodeKind::core && !facts.writes_waited;
   }
   if (image) {
     for (const std::string_view side : {"packets.width", "packets.height"}) {
@@ -108,6 +110,30 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   }
   if (machine.prefetch.on()) {
     resources.push_back(more(changer, Part::caches, "prefetch.outstanding"));
+  }
+}
+
+void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
+  if (machine.kind == NodeKind::core) {
+    return;
+  }
+  resources.push_back(more(changer, Part::nodes, "simt.warps"));
+  resources.push_back(more(changer, Part::nodes, "simt.issue", machine.simt.warps));
+  resources.push_back(more(changer, Part::nodes, "cache.ports"));
+  resources.push_back(more(changer, Part::nodes, "cache.mshrs"));
+  if (machine.rt.warps == 0) {
+    return;
+  }
+  resources.push_back(more(changer, Part::nodes, "rt.warps", machine.simt.warps));
+  for (const auto& [key, units] :
+       {std::pair{"rt.box_units", machine.rt.box_units}, {"rt.triangle_units", machine.rt.triangle_units}}) {
+    if (units > 0) {
+      resources.push_back(more(changer, Part::nodes, key));
+    }
+  }
+  for (const std::string_view test :
+       {"rt.box_cycles", "rt.leaf_cycles", "rt.triangle_cycles", "rt.quadric_cycles"}) {
+    resources.push_back(fewer(changer, Part::nodes, test));
   }
 }
 
@@ -215,6 +241,7 @@ std::vector<Resource> resources_of(const Changer& changer, const MachineConfig& 
                                    const FrameFacts& facts) {
   std::vector<Resource> resources;
   add_nodes(changer, machine, facts, resources);
+  add_simt(changer, machine, resources);
   add_caches(changer, machine, facts.database_bytes, resources);
   add_local_memory(changer, machine, resources);
   add_shared_memory(changer, machine, facts, resources);

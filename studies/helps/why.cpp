@@ -168,6 +168,31 @@ double nodes_share(const std::string& name, const figures::FlowFigures& flow) {
   return std::max(flow.slowest().busiest, flow.all.busiest);
 }
 
+bool is_for_waits(std::string_view name) {
+  return name.starts_with("simt.warps") || name.starts_with("rt.warps") || name.starts_with("cache.mshrs");
+}
+
+// How much of a SIMT node's waits more of this can fill, from 0 to 1: warps in the unit where others queue
+// for it, warps of the node where none do, registers where look-ups find none.
+double fills_waits(std::string_view name, const figures::Counts& counts) {
+  const auto lanes = [&](std::string_view state) {
+    return static_cast<double>(figures::count_of(counts, "simt_lanes_" + std::string(state)).value_or(0));
+  };
+  double in_unit = 1.0;
+  for (const std::string_view state : {"scheduler", "cache", "memory", "box", "primitive"}) {
+    in_unit += lanes(state);
+  }
+  constexpr double some = 0.1;  // as many queue as make it certain that the unit is full
+  const double queue = std::min(1.0, lanes("unit") / in_unit / some);
+  if (name.starts_with("rt.warps")) {
+    return queue;
+  }
+  if (name.starts_with("simt.warps")) {
+    return 1.0 - queue;
+  }
+  return figure(counts, "simt_full_share");
+}
+
 }  // namespace
 
 double expected_saving(const Help& help, double factor, const MachineConfig& machine,
@@ -193,8 +218,11 @@ double expected_saving(const Help& help, double factor, const MachineConfig& mac
   // Faster nodes, and more of them, ask the way to memory for as much as before.
   const double room = 1.0 - full;
   const double idle = share(counts, {Activity::idle});
+  // Looking up in the node's own caches is a wait that other warps can fill.
+  const double waiting = 1.0 - idle - computing(counts) + share(counts, {Activity::cache_access});
   const double takes = help.name == "machine.nodes"             ? 1.0 - idle
                        : help.name.starts_with("node.contexts") ? 1.0 - idle - computing(counts)
+                       : is_for_waits(help.name)                ? waiting * fills_waits(help.name, counts)
                                                                 : computing(counts);
   return std::min(takes * gone, room);
 }

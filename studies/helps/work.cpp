@@ -7,6 +7,9 @@ using processors::cost::Activity;
 sim::Ticks least_time(const processors::machine::MachineConfig& machine,
                       const processors::replay::MachineResult& result,
                       const processors::machine::MachineConfig& changed) {
+  if (machine.kind == processors::machine::NodeKind::simt) {
+    return 0;  // lanes take steps together, and how many do depends on the machine
+  }
   const processors::cost::TimeSums time = result.time();
   sim::Sum steps = 0;
   for (const Activity activity : {Activity::traversal, Activity::intersection, Activity::shading}) {
@@ -27,6 +30,7 @@ constexpr Work walked_reference = 4;
 constexpr Work stripped_reference = 10;
 constexpr Work stripping_of_a_reference = 4;
 constexpr Work event = 80;
+constexpr Work event_of_lanes = 240;  // a cycle of a SIMT node, or a line that it asks for
 
 Work references_of(const processors::replay::MachineResult& result) {
   return static_cast<Work>(result.references().references());
@@ -40,6 +44,9 @@ Work whole_replay_work(Work references, Work events) {
 
 Work replay_work(const processors::replay::MachineResult& result,
                  const processors::walk::StrippedLog* stripped) {
+  if (!result.simt.nodes.empty()) {
+    return event_of_lanes * result.events;
+  }
   return stripped != nullptr ? stripped_reference * stripped->references() + event * result.events
                              : whole_replay_work(references_of(result), result.events);
 }

@@ -32,6 +32,8 @@ std::vector<std::string_view> keys_of(Feature feature) {
       return {"l2.sharing"};
     case counting:
       return {"count.miss_classes", "count.sharing", "count.attribution"};
+    case simt:
+      return {"node.kind"};
     case moving_rays:
       break;
   }
@@ -51,6 +53,7 @@ MachineConfig features_of(const sim::Config& given) {
   machine.l2.sharing = config.choice_as<processors::machine::SecondLevel>("l2.sharing");
   machine.count = {config.boolean("count.miss_classes"), config.boolean("count.sharing"),
                    config.boolean("count.attribution")};
+  machine.kind = config.choice_as<processors::machine::NodeKind>("node.kind");
   machine.scheme = config.choice_as<processors::machine::Scheme>("machine.scheme");
   return machine;
 }

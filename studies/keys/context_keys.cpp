@@ -62,7 +62,8 @@ void read_contexts(sim::Config& config, processors::machine::MachineConfig& mach
   config.mark_unused_reason("node.switch_cycles", "a node with one context has no other to take up",
                             "node.contexts");
   read_prefetch(config, machine);
-  if (std::uint64_t{machine.all_nodes()} * machine.ports_of_node() > processors::machine::most_ports) {
+  if (machine.kind == processors::machine::NodeKind::core &&
+      std::uint64_t{machine.all_nodes()} * machine.ports_of_node() > processors::machine::most_ports) {
     config.fail("node.contexts", "nodes times contexts and prefetches under way must be at most 2^28");
   }
 }

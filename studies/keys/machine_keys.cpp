@@ -57,8 +57,9 @@ void declare_node(Schema& schema) {
                  "clusters, each with a copy of the database in its own shared memory");
   schema.integer("machine.nodes", 16, {1, processors::machine::most_nodes}, "",
                  "processor nodes in each cluster");
-  schema.section("node",
-                 "one processor node; it works in order and stalls on a miss, unless it has other contexts");
+  schema.section(
+      "node", "one processor node; a core works in order and stalls on a miss, unless it has other contexts");
+  declare_node_kind(schema);
   clock(schema, "node.clock", "clock of the node and its cache");
   schema.size("node.word", "4 B", {"1 B", "64 B"}, "what one load or store moves");
   schema.choice(
@@ -68,6 +69,7 @@ void declare_node(Schema& schema) {
   schema.integer("node.write_buffer", 4, {1, 4096}, "",
                  "posted pixel writes a node may have outstanding before it stalls");
   declare_context_keys(schema);
+  declare_simt_keys(schema);
   schema.section("costs", "cycles of one operation; steps are priced by counted operation mixes");
   const std::vector<std::string> presets = sim::mapped(
       processors::cost::cost_presets(), [&](const std::string_view preset) { return std::string(preset); });
@@ -101,6 +103,9 @@ void declare_memory(Schema& schema) {
                 "after the other");
   schema.size("layout.treelet", "4 KiB", {"1 B", "1 GiB"},
               "treelets: most bytes of one, but the children of a node are never divided");
+  schema.choice("layout.leaf", "list", names(memory::leaf_layout_names),
+                "list: a leaf has a list of references to its primitives; inline (a bvh, SIMT nodes): its "
+                "primitives lie in a row, one record for each reference");
   schema.section("cache", "the private cache of a node; it holds what is read of the database");
   schema.choice("cache.organisation", "unified", names(processors::machine::cache_organisation_names),
                 "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
@@ -120,6 +125,7 @@ void declare_memory(Schema& schema) {
   schema.integer("cache.seed", 1, {0, std::numeric_limits<std::int64_t>::max()}, "",
                  "seed of random replacement");
   cycles(schema, "cache.hit_cycles", 1, "cycles of a reference that hits");
+  declare_simt_cache_keys(schema);
   declare_second_level_keys(schema);
   declare_prefetch_keys(schema);
   schema.section("database", "where the scene database is");
@@ -229,6 +235,18 @@ void read_layout(sim::Config& config, memory::LayoutConfig& layout) {
   }
   config.mark_unused_reason("layout.treelet", "only layout.node_order = \"treelets\" makes treelets",
                             "layout.node_order");
+}
+
+void read_leaf_layout(sim::Config& config, processors::machine::MachineConfig& machine) {
+  machine.layout.leaf = config.choice_as<memory::LeafLayout>("layout.leaf");
+  if (machine.layout.leaf == memory::LeafLayout::list) {
+    return;
+  }
+  if (config.choice_name("structure.kind") != "bvh") {
+    config.fail("layout.leaf",
+                "\"inline\" is for structure.kind = \"bvh\", each of whose primitives is in one leaf or few; "
+                "use \"list\"");
+  }
 }
 
 // Reads the size of one cache. A cache shape that cannot be built is reported under the size key.
@@ -399,6 +417,8 @@ processors::machine::MachineConfig read_machine(sim::Config& config) {
   read_costs(config, machine);
   read_layout(config, machine.layout);
   read_cache(config, machine.cache);
+  read_simt(config, machine);
+  read_leaf_layout(config, machine);
   machine.build = read_build(config);
   if (image && (machine.pixels == processors::machine::Pixels::written ||
                 machine.build.sharing != processors::machine::Sharing::given)) {

@@ -30,6 +30,13 @@ void declare_context_keys(sim::Schema& schema);
 void declare_prefetch_keys(sim::Schema& schema);
 void read_contexts(sim::Config& config, processors::machine::MachineConfig& machine);
 
+/// node.kind, [simt] and [rt], and the keys of [cache] that only SIMT nodes have. Read into a machine whose
+/// cache has been read.
+void declare_node_kind(sim::Schema& schema);
+void declare_simt_keys(sim::Schema& schema);
+void declare_simt_cache_keys(sim::Schema& schema);
+void read_simt(sim::Config& config, processors::machine::MachineConfig& machine);
+
 /// memory.model, which belongs to the section before, and [dram]; the memory behind an interconnect that has
 /// one.
 void declare_memory_model(sim::Schema& schema);

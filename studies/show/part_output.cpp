@@ -2,9 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "memory/dram_presets.h"
@@ -83,6 +85,67 @@ std::string context_lines(const run::RunResult& r) {
                    tables::grouped(r.count("contexts_issued")), useful ? tables::percent(*useful) : "-",
                    tables::grouped(r.count("contexts_late")), tables::grouped(r.count("contexts_dropped")));
   }
+  return text;
+}
+
+nlohmann::ordered_json simt_json(const run::RunResult& r) {
+  if (r.timed.simt.nodes.empty()) {
+    return nullptr;
+  }
+  return {{"lanes", r.machine.simt.lanes},
+          {"warps", r.machine.simt.warps},
+          {"warps_in_unit", r.machine.rt.warps},
+          {"per_node", counters_list(r.timed.simt.nodes)}};
+}
+
+std::string simt_lines(const run::RunResult& r) {
+  if (r.timed.simt.nodes.empty()) {
+    return {};
+  }
+  const auto percent = [](std::optional<double> share) { return share ? tables::percent(*share) : "-"; };
+  const auto number = [&](std::string_view figure) { return r.figure(std::string(figure)).value_or(0.0); };
+  std::string text =
+      fmt::format("SIMT          {} warps of {} lanes a node, {}; lanes busy {} of the time\n",
+                  r.machine.simt.warps, r.machine.simt.lanes,
+                  r.machine.rt.warps > 0 ? fmt::format("{:.2f} of {} places in the unit taken",
+                                                       number("simt_mean_warps"), r.machine.rt.warps)
+                                         : "no ray-tracing unit",
+                  percent(r.figure("simt_efficiency")));
+  const auto out = std::back_inserter(text);
+  std::int64_t all = 0;
+  const auto of_state = [&](std::string_view state) { return r.count("simt_lanes_" + std::string(state)); };
+  constexpr std::array<std::pair<std::string_view, std::string_view>, processors::walk::lane_states> states =
+      {{
+          {"shading", "shade"},
+          {"slot", "wait for a slot"},
+          {"unit", "for the unit"},
+          {"scheduler", "for their look-up"},
+          {"cache", "for the cache"},
+          {"memory", "for memory"},
+          {"box", "test boxes"},
+          {"primitive", "test primitives"},
+          {"held", "are held by their warp"},
+          {"empty", "have no pixel"},
+      }};
+  for (const auto& [name, words] : states) {
+    all += of_state(name);
+  }
+  fmt::format_to(out, "  {:<12}", "lanes");
+  for (const auto& [name, words] : states) {
+    fmt::format_to(out, "{}{} {}",
+                   name == "shading"                      ? ""
+                   : name == "scheduler" || name == "box" ? ",\n              "
+                                                          : ", ",
+                   words, percent(sim::ratio(of_state(name), all)));
+  }
+  fmt::format_to(
+      out,
+      "\n  {:<12}{:.2f} lanes an access; mean {:.1f} of {} under way, {} joined; none free {} of the time\n",
+      "lines", number("simt_lanes_an_access"), number("simt_mean_lines"), r.machine.simt.mshrs,
+      tables::grouped(r.count("simt_joined")), percent(r.figure("simt_full_share")));
+  fmt::format_to(out, "  {:<12}{:.0f} cycles on average, the longest {}; the slowest warp {} for a packet\n",
+                 "rays", number("simt_ray_latency"), tables::grouped(r.count("simt_longest_ray")),
+                 tables::grouped(r.count("simt_longest_warp")));
   return text;
 }
 

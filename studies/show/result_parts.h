@@ -20,6 +20,10 @@ namespace marti::studies::show {
 [[nodiscard]] nlohmann::ordered_json second_level_json(const run::RunResult& result);
 [[nodiscard]] std::string second_level_line(const run::RunResult& result);
 
+/// SIMT nodes.
+[[nodiscard]] nlohmann::ordered_json simt_json(const run::RunResult& result);
+[[nodiscard]] std::string simt_lines(const run::RunResult& result);
+
 /// Contexts and prefetching.
 [[nodiscard]] nlohmann::ordered_json context_json(const run::RunResult& result);
 [[nodiscard]] std::string context_lines(const run::RunResult& result);

@@ -255,7 +255,7 @@ std::string summary_of(const run::RunResult& r) {
   time_lines(out, r);
   memory_lines(out, r);
   for (const auto& lines : {energy_lines, counts_lines, working_set_lines, critical_path_lines, context_lines,
-                            build_lines, flow_lines, bound_lines, record_lines, helps_lines}) {
+                            simt_lines, build_lines, flow_lines, bound_lines, record_lines, helps_lines}) {
     text += lines(r);
   }
   return text;

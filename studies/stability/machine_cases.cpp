@@ -46,6 +46,10 @@ const std::vector<Duration>& durations() {
       {"costs.load", [](M& m) -> std::int64_t& { return m.operations.load; }},
       {"costs.store", [](M& m) -> std::int64_t& { return m.operations.store; }},
       {"node.switch_cycles", [](M& m) -> std::int64_t& { return m.switch_cycles; }},
+      {"rt.box_cycles", [](M& m) -> std::int64_t& { return m.rt.box_cycles; }},
+      {"rt.leaf_cycles", [](M& m) -> std::int64_t& { return m.rt.leaf_cycles; }},
+      {"rt.triangle_cycles", [](M& m) -> std::int64_t& { return m.rt.triangle_cycles; }},
+      {"rt.quadric_cycles", [](M& m) -> std::int64_t& { return m.rt.quadric_cycles; }},
       {"cache.hit_cycles", [](M& m) -> std::int64_t& { return m.cache.hit_cycles; }},
       {"l2.hit_cycles", [](M& m) -> std::int64_t& { return m.l2.hit_cycles; }},
       {"local.access_cycles", [](M& m) -> std::int64_t& { return m.local.access_cycles; }},
@@ -100,8 +104,8 @@ bool builds(const MachineConfig& machine) {
 
 /// Whether the order of events decides nothing about what each node reads, and in which order.
 bool reads_in_order(const MachineConfig& machine) {
-  return machine.scheme == Scheme::image && machine.contexts == 1 && !machine.prefetch.on() &&
-         !builds(machine);
+  return machine.kind == processors::machine::NodeKind::core && machine.scheme == Scheme::image &&
+         machine.contexts == 1 && !machine.prefetch.on() && !builds(machine);
 }
 
 /// A machine that is tried, and what must hold of its result.
@@ -226,6 +230,9 @@ CaseOutcome single_times(const Subject& subject) {
 
 /// Nothing takes time.
 CaseOutcome without_time(const Subject& subject) {
+  if (subject.machine.kind == processors::machine::NodeKind::simt) {
+    return not_tried("a look-up of a SIMT node takes a cycle at least");
+  }
   MachineConfig machine = subject.machine;
   machine.banks.dram.reset();  // its commands take a cycle at least
   for (const Duration& duration : durations()) {

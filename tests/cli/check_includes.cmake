@@ -26,12 +26,13 @@ room(processors/theory)
 room(processors/cost machine program)
 room(processors/walk cost machine program)
 room(processors/node cost machine program walk)
+room(processors/simt cost machine node program walk)
 room(processors/energy cost machine node program)
 room(processors/path cost machine node program walk)
 room(processors/flow machine node program walk)
 room(processors/flow/pipeline flow machine program walk)
 room(processors/flow/space cost flow machine program walk)
-room(processors/replay cost energy flow flow/pipeline flow/space machine node path program theory walk)
+room(processors/replay cost energy flow flow/pipeline flow/space machine node path program simt theory walk)
 room(processors/passes cost machine program replay walk)
 room(studies/host)
 room(studies/figures)
@@ -100,7 +101,7 @@ set(world_files
   "^processors/program/"
   "^processors/([^pc]|pa|cost/([^o]|o[^p]))")
 set(world_headers
-  "^(memory/|processors/(machine|cost|energy|walk|node|path|flow|replay|passes|theory)/)"
+  "^(memory/|processors/(machine|cost|energy|walk|node|simt|path|flow|replay|passes|theory)/)"
   "^processors/program/(render|tracer|shading|recorder)[.]h$")
 set(world_reasons
   "the ray-tracing program must not know the machine"

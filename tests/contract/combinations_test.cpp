@@ -10,7 +10,9 @@
 #include "processors/replay/replay.h"
 #include "sim/key_error.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/first_difference.h"
 #include "tests/support/long_tests.h"
+#include "tests/support/naive_simt.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/processors/naive_contexts.h"
@@ -50,6 +52,13 @@ void ask_for(Random& random, Feature feature, bool tree, MachineConfig& machine)
       machine.count = {random() % 2 == 0, random() % 2 == 0, random() % 2 == 0};
       machine.count.attribution = machine.count.attribution || !machine.count.any();
       break;
+    case Feature::simt:
+      machine.kind = NodeKind::simt;
+      machine.simt.lanes = static_cast<std::uint32_t>(pick(random, 1, 16));
+      machine.simt.warps = static_cast<std::uint32_t>(pick(random, 1, 4));
+      machine.simt.mshrs = static_cast<std::uint32_t>(pick(random, 1, 8));
+      machine.rt.warps = static_cast<std::uint32_t>(pick(random, 0, 3));
+      break;
     case Feature::moving_rays:
       random() % 2 == 0 ? test::make_random_pipeline(random, machine)
                         : test::make_random_space(random, machine);
@@ -62,9 +71,43 @@ struct Case {
   MachineConfig machine;
 };
 
+// The log with a ray before each visit that follows none, as the tracer writes logs: a lane of a SIMT node
+// traces rays.
+WorkLog with_rays(const WorkLog& log) {
+  WorkLog all = log;
+  for (LogRow& row : all.rows) {
+    const LogRow before = row;
+    row = {};
+    for (std::uint32_t x = 0; x < log.width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      bool traces = false;
+      const std::uint32_t* word = before.words.data() + before.begin[x];
+      const std::uint32_t* const end = before.words.data() + before.begin[x + 1];
+      while (word != end) {
+        const Step step = step_of(*word);
+        const bool visit = visits_node(step) || step == Step::pass;
+        if (visit && !traces) {
+          row.words.push_back(camera_ray);
+        }
+        traces = visit || step == Step::ray;
+        row.words.insert(row.words.end(), word, word + step_words(word));
+        word += step_words(word);
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return all;
+}
+
 // A random machine that has these two features and, of the others, none.
 Case machine_with(Random& random, Feature first, Feature second) {
   Case c{test::random_log_with_tree(random), test::random_machine(random, 6)};
+  if (first == Feature::simt || second == Feature::simt) {
+    while (c.log.mailboxes) {
+      c.log = test::random_log_with_tree(random);
+    }
+    c.log = with_rays(c.log);
+  }
   MachineConfig& machine = c.machine;
   machine.placement = random() % 4 == 0 ? Placement::replicated : Placement::shared;
   if (machine.cache.organisation == CacheOrganisation::none) {
@@ -139,7 +182,12 @@ TEST_P(Pairs, RunsOrIsRefusedWithTheKeysOfBoth) {
     MachineConfig uncounted = machine;
     uncounted.count = {};
     test::expect_equal(result, replay::replay(log, uncounted));
-    if (machine.scheme == Scheme::image && machine.build.sharing == Sharing::given) {
+    if (machine.kind == NodeKind::simt) {
+      if (seed > test::cases(12U)) {
+        continue;  // every cycle of every node takes time
+      }
+      EXPECT_EQ(test::FirstDifference::between(result, test::naive_simt(log, machine)), "");
+    } else if (machine.scheme == Scheme::image && machine.build.sharing == Sharing::given) {
       expect_as_naive(log, machine, result);
     }
   }

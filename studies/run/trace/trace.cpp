@@ -43,7 +43,7 @@ void refuse_other_machines(const sim::Config& config, const processors::machine:
   if (machine.scheme != processors::machine::Scheme::image) {
     config.fail("machine.scheme", "only nodes of the image scheme have references that a trace can hold");
   }
-  for (const Feature feature : {Feature::contexts, Feature::prefetch}) {
+  for (const Feature feature : {Feature::contexts, Feature::prefetch, Feature::simt}) {
     if (processors::machine::has(machine, feature)) {
       config.fail(
           processors::machine::key_of(machine, feature),

@@ -42,7 +42,7 @@ sim::EffectiveValue effective(const sim::Config& config, std::size_t key) {
 
 // Adds what a setting says about times and counts: nothing if it is about energy. An interconnect's width
 // decides how many beats its transfers take. Where these are whole lines and pixels, machines with equal
-// beats take equal times.
+// beats take equal times. A SIMT node's writes have several pixels.
 void add_timing(Digest& digest, const sim::EffectiveValue& setting,
                 const processors::machine::MachineConfig& machine) {
   using namespace processors::machine;
@@ -50,7 +50,7 @@ void add_timing(Digest& digest, const sim::EffectiveValue& setting,
     return;
   }
   if (setting.key == "interconnect.width" && machine.cache.organisation != CacheOrganisation::none &&
-      machine.build.sharing == Sharing::given) {
+      machine.build.sharing == Sharing::given && machine.kind == NodeKind::core) {
     const auto beats = [&](std::uint32_t bytes) { return std::to_string(machine.interconnect.beats(bytes)); };
     add(digest, "beats", beats(machine.cache.cache.line) + " " + beats(machine.layout.pixel_bytes));
   } else {

@@ -30,6 +30,7 @@ const std::array<Asked, processors::machine::features> asked = {{
     {"database.placement", "\"distributed\"", "database.interleave = \"4 KiB\""},
     {"l2.sharing", "\"private\"", "l2.ways = 4"},
     {"count.sharing", "true", ""},
+    {"node.kind", "\"simt\"", "simt.warps = 2"},
     {"machine.scheme", "\"pipeline\"", "pipeline.queue = 2"},
 }};
 const Asked& asked_of(Feature feature) { return asked[static_cast<std::size_t>(feature)]; }

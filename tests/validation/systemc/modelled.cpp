@@ -53,10 +53,11 @@ void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
             const processors::machine::LocalMemoryConfig& local) {
   using memory::NodeOrder;
   [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
-                                section_alignment, order, treelet] = layout;
+                                section_alignment, order, leaf, treelet] = layout;
   [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache, dram] =
       banks;
   [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;
+  sim::ensure(leaf == memory::LeafLayout::list, "the leaves of the SystemC model have lists");
   sim::ensure(!shared_cache, "the SystemC model has no cache before the banks");
   sim::ensure(!dram, "the SystemC model has banks of fixed times only");
   ensure_one_of(order, {NodeOrder::breadth_first, NodeOrder::depth_first, NodeOrder::treelets},
@@ -70,10 +71,11 @@ void refuse_what_is_not_modelled(const processors::machine::MachineConfig& confi
   // network, messages, pipeline and space have a meaning only in schemes that are refused; distribution and
   // network only with a placement that is; switch_cycles only with more than one context. Energy changes no
   // time.
-  [[maybe_unused]] const auto& [clusters, nodes, clock, operations, word_bytes, pixels, write_buffer,
-                                contexts, switch_cycles, prefetch, layout, cache, l2, placement, distribution,
-                                local, interconnect, banks, packets, host, build, scheme, network, messages,
-                                pipeline, space, count, energy] = config;
+  [[maybe_unused]] const auto& [clusters, nodes, kind, simt, rt, clock, operations, word_bytes, pixels,
+                                write_buffer, contexts, switch_cycles, prefetch, layout, cache, l2, placement,
+                                distribution, local, interconnect, banks, packets, host, build, scheme,
+                                network, messages, pipeline, space, count, energy] = config;
+  sim::ensure(kind == processors::machine::NodeKind::core, "a node of the SystemC model is a scalar core");
   sim::ensure(pixels == processors::machine::Pixels::written,
               "a node of the SystemC model writes its pixels");
   sim::ensure(contexts == 1 && !prefetch.on(), "a node of the SystemC model has one context and no prefetch");

@@ -1,0 +1,64 @@
+#include "processors/machine/simt_config.h"
+
+#include <bit>
+#include <string>
+#include <utility>
+
+#include "processors/machine/machine_config.h"
+#include "sim/key_error.h"
+
+namespace marti::processors::machine {
+
+namespace {
+
+void check_range(std::string_view key, std::uint32_t value, std::uint32_t least, std::uint32_t most) {
+  if (value < least || value > most) {
+    throw sim::KeyError(std::string(key),
+                        "must be from " + std::to_string(least) + " to " + std::to_string(most));
+  }
+}
+
+}  // namespace
+
+void check_simt(const MachineConfig& config) {
+  if (config.kind == NodeKind::core) {
+    if (config.layout.leaf == memory::LeafLayout::inline_records) {
+      throw sim::KeyError("layout.leaf", "\"inline\" is for node.kind = \"simt\"; use \"list\"");
+    }
+    return;
+  }
+  const SimtConfig& simt = config.simt;
+  const RtUnitConfig& rt = config.rt;
+  check_range("simt.lanes", simt.lanes, 1, most_lanes);
+  check_range("simt.warps", simt.warps, 1, most_warps);
+  check_range("simt.issue", simt.issue, 1, most_warps);
+  check_range("cache.ports", simt.ports, 1, most_cache_ports);
+  check_range("cache.mshrs", simt.mshrs, 1, most_mshrs);
+  check_range("rt.warps", rt.warps, 0, most_warps);
+  check_range("rt.box_units", rt.box_units, 0, most_test_units);
+  check_range("rt.triangle_units", rt.triangle_units, 0, most_test_units);
+  for (const auto& [key, cycles] : {std::pair{"rt.box_cycles", rt.box_cycles},
+                                    {"rt.leaf_cycles", rt.leaf_cycles},
+                                    {"rt.triangle_cycles", rt.triangle_cycles},
+                                    {"rt.quadric_cycles", rt.quadric_cycles}}) {
+    if (cycles < 0) {
+      throw sim::KeyError(key, "must not be negative");
+    }
+  }
+  if (config.cache.organisation == CacheOrganisation::none) {
+    throw sim::KeyError("node.kind",
+                        "\"simt\" needs a cache, whose lines its lanes share while they are under way; set "
+                        "cache.organisation = \"unified\"");
+  }
+  const std::uint32_t line = config.cache.cache.line;
+  if (simt.sector != 0 &&
+      (!std::has_single_bit(simt.sector) || simt.sector > line || line / simt.sector > most_sectors)) {
+    throw sim::KeyError("cache.sector", "must be a power of two that divides cache.line, " +
+                                            std::to_string(line) + " bytes, into at most 8 sectors");
+  }
+  if (std::uint64_t{config.all_nodes()} * config.ports_of_node() > most_ports) {
+    throw sim::KeyError("cache.mshrs", "nodes with more than 2^28 lines under way in all");
+  }
+}
+
+}  // namespace marti::processors::machine

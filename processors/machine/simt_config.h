@@ -1,0 +1,65 @@
+// Configuration of a SIMT node and its ray-tracing unit (docs/rt-unit.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace marti::processors::machine {
+
+struct MachineConfig;
+
+/// core: a scalar processor that works in order. simt: warps of lanes beside a ray-tracing unit.
+enum class NodeKind : std::uint8_t { core, simt };
+inline constexpr std::array<std::string_view, 2> node_kind_names = {"core", "simt"};
+
+/// Which of a warp's lanes that hold a ray trace together. kind: those with the least (bounce, kind of ray).
+enum class Reconverge : std::uint8_t { kind, any };
+inline constexpr std::array<std::string_view, 2> reconverge_names = {"kind", "any"};
+
+/// Which warp of the unit may ask for a record next.
+enum class RtScheduler : std::uint8_t { oldest, greedy, round_robin };
+inline constexpr std::array<std::string_view, 3> rt_scheduler_names = {"oldest", "greedy", "round_robin"};
+
+/// Whose accesses to the same record become one.
+enum class RtCoalesce : std::uint8_t { none, warp, unit };
+inline constexpr std::array<std::string_view, 3> rt_coalesce_names = {"none", "warp", "unit"};
+
+/// The most lanes of a warp, warps of a node, and slots on which warps compute.
+inline constexpr std::uint32_t most_lanes = 64;
+inline constexpr std::uint32_t most_warps = 64;
+/// The most lines that may be looked up in a cycle, and be under way at a node.
+inline constexpr std::uint32_t most_cache_ports = 64;
+inline constexpr std::uint32_t most_mshrs = 1024;
+/// The most sectors of a line.
+inline constexpr std::uint32_t most_sectors = 8;
+/// The most tests that may be said to begin in a cycle.
+inline constexpr std::uint32_t most_test_units = 4096;
+
+struct SimtConfig {
+  std::uint32_t lanes = 32;  ///< of a warp, 1 to most_lanes
+  std::uint32_t warps = 16;  ///< of a node, 1 to most_warps
+  std::uint32_t issue = 1;   ///< warps that compute at once, 1 to most_warps
+  Reconverge reconverge = Reconverge::kind;
+  std::uint32_t ports = 1;   ///< lines looked up in a cycle, 1 to most_cache_ports
+  std::uint32_t mshrs = 64;  ///< lines under way, 1 to most_mshrs
+  std::uint32_t sector = 0;  ///< bytes fetched on a miss, a power of two that divides the line; 0: the line
+};
+
+/// Cycles of a test, at least 0; waiting for a unit comes on top.
+struct RtUnitConfig {
+  std::uint32_t warps = 4;  ///< in the unit at once, 0 to most_warps; 0: there is no unit
+  RtScheduler scheduler = RtScheduler::oldest;
+  RtCoalesce coalesce = RtCoalesce::warp;
+  std::int64_t box_cycles = 8;
+  std::int64_t leaf_cycles = 4;
+  std::int64_t triangle_cycles = 8;
+  std::int64_t quadric_cycles = 16;
+  std::uint32_t box_units = 0;       ///< tests of boxes and leaves that may begin in a cycle; 0: any number
+  std::uint32_t triangle_units = 0;  ///< the same of triangles and quadrics
+};
+
+/// The part of check() for SIMT nodes; checks nothing for others.
+void check_simt(const MachineConfig& config);
+
+}  // namespace marti::processors::machine

@@ -1,0 +1,187 @@
+// One SIMT node: what happens in each of its cycles (docs/rt-unit.md, The order of one cycle). It knows no
+// events: its user calls it in cycles in which something is due, and takes what it asks for.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "memory/interconnect.h"
+#include "processors/simt/cycle_queue.h"
+#include "processors/simt/lane_walk.h"
+#include "processors/simt/line_registers.h"
+#include "processors/simt/node_time.h"
+#include "processors/simt/pool.h"
+#include "processors/simt/rt_unit.h"
+#include "processors/simt/sector_caches.h"
+#include "processors/simt/warp.h"
+#include "processors/walk/behind_cache.h"
+#include "processors/walk/cache_counting.h"
+
+namespace marti::processors::simt {
+
+/// Steps of a round without a unit: branches, leaves, cuts, passes; then tests of triangles, spheres, cones.
+inline constexpr std::size_t round_visits = 4;
+inline constexpr std::size_t round_steps = 7;
+using RoundCounts = std::array<std::int64_t, round_steps>;
+
+/// What all nodes share. Prices are in cycles.
+struct SimtShared {
+  explicit SimtShared(const walk::ReplayInput& replay);
+
+  const walk::ReplayInput& input;
+  LaneWalk walk;
+  SectorCaches caches;
+  walk::BehindCache behind;
+  std::optional<walk::CacheCounting> counting{};  ///< where it is asked for
+  std::array<std::int64_t, shader_steps> shader_cycles{};
+  std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
+  RoundCounts round_cycles{};
+  unsigned unit_shift = 0;  ///< from addresses to lines
+};
+
+/// Tells a node what its write buffer can take.
+class WriteRoom {
+ public:
+  virtual ~WriteRoom() = default;
+  /// Whether node `node` may post another write now, after `queued` that it posts in this cycle.
+  [[nodiscard]] virtual bool has_room(std::uint32_t node, std::size_t queued) const = 0;
+};
+
+class SimtNode {
+ public:
+  SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatistics& statistics, std::uint32_t number);
+
+  /// What the node asks for in a cycle; its user takes it and clears it.
+  std::vector<memory::Transaction> reads;  ///< ports are registers
+  std::vector<PixelWrite> writes;
+  std::vector<std::uint32_t> asks;  ///< warps that ask for a packet
+
+  /// Steps 1 to 6 of a cycle.
+  void step(std::int64_t cycle);
+  /// Step 8.
+  void look_up(std::int64_t cycle);
+  /// The first cycle in which something is due; no_cycle if only others can move the node on.
+  [[nodiscard]] std::int64_t next_cycle() const { return queue_.next(); }
+
+  /// A warp's packet reaches it in the present cycle, after step 6.
+  void begin_packet(std::uint32_t warp, const machine::Packet& packet);
+  /// It reaches it in a later cycle.
+  void expect_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
+  /// No packet is left for the warp. True when none is left for the node.
+  bool end_warp();
+  /// The line of a register arrives, which became known in cycle `known`, or before the next.
+  void arrives(std::uint32_t number, const memory::Service& service, std::int64_t known);
+  /// The write that was held may find room from a cycle on.
+  void wake(std::int64_t cycle) {
+    cycle = std::max(cycle, stepped_ + 1);
+    if (std::exchange(woken_, cycle) != cycle) {
+      queue_.push(cycle, {});
+    }
+  }
+  [[nodiscard]] bool waits_for_room() const { return !writers_.empty(); }
+
+  /// Accounts for the time up to a cycle, exclusive.
+  void settle(std::int64_t cycle);
+  [[nodiscard]] const NodeTime& time() const { return time_; }
+  [[nodiscard]] NodeTime& time() { return time_; }
+  /// The sums of the parts of all reads beyond the node.
+  [[nodiscard]] const std::array<sim::Sum, 4>& read_parts() const { return read_parts_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  // Waiters of lines: accesses, and warps for their phases.
+  static constexpr std::uint32_t phase_bit = 1U << 31U;
+
+  Lane& lane(std::uint32_t warp, std::uint32_t number) {
+    return lanes_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
+  }
+
+  void set_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
+
+  // simt_phases.cpp: warps beside the unit.
+  void advance(std::uint32_t warp);
+  void begin_turn(std::uint32_t warp);
+  void begin_shading(std::uint32_t warp, Lanes members);
+  void begin_trace(std::uint32_t warp);
+  void begin_round(std::uint32_t warp, Lanes lanes);
+  bool next_round_records(std::uint32_t warp, Lanes lanes);
+  void begin_phase(std::uint32_t warp, Does does);
+  void ask_for_slot(std::uint32_t warp);
+  [[nodiscard]] static bool phase_done(const Warp& warp);
+  void refresh_phase(std::uint32_t warp);
+  void end_shading(std::uint32_t warp);
+  void go_on(std::uint32_t warp);
+  void write_out();
+  void give_slots();
+  void place(Warp& warp, LaneState state, std::int64_t lanes);
+  void end_ray(std::uint32_t warp);
+
+  // rt_unit.cpp: warps in the unit.
+  void leave_and_enter();
+  bool pick_access();
+  [[nodiscard]] std::optional<std::uint32_t> pick_warp();
+  void sent(Access& access);
+  void complete(std::uint32_t number);
+  void begin_test(const WarpLanes& lanes, Test test, LaneState from);
+  void begin_waiting_tests();
+  void end_test(const WarpLanes& lanes, LaneState from);
+
+  // Lines.
+  bool look_up_line(std::uint32_t waiter, const LineRead& line);
+  void line_there(std::uint32_t waiter, bool left);
+  void count_pending(std::uint32_t waiter, bool left);
+
+  SimtShared& shared_;
+  const WriteRoom& room_;
+  cost::NodeStatistics& statistics_;
+  std::uint32_t number_;
+  std::int64_t cycle_ = 0;
+  std::int64_t stepped_ = -1;  // the last cycle whose step() was called
+  std::int64_t woken_ = -1;    // the cycle of the last wake()
+
+  std::vector<Warp> warps_;
+  std::vector<Lane> lanes_;
+  CycleQueue queue_;
+  LineRegisters registers_;
+  NodeTime time_;
+  std::array<sim::Sum, 4> read_parts_{};  // interconnect wait, transfer, bank wait, bank
+  std::uint64_t touched_ = 0;             // warps that may go on in step 5
+  std::uint32_t live_;                    // warps that may still get a packet
+  std::uint32_t without_packet_;          // of these, those that have none
+  std::int64_t hits_pending_ = 0;         // lines that are there later, from the first level
+  std::int64_t tests_running_ = 0;
+  std::int64_t full_from_ = no_cycle;  // since when a look-up finds no register
+
+  std::vector<Slot> slots_;                  // in the order in which they were taken
+  std::vector<std::uint32_t> slot_waiters_;  // warps, in the order in which they are served
+  std::vector<std::uint32_t> readers_;       // warps whose phases have lines to look up, in that order
+  std::deque<std::uint32_t> writers_;        // warps whose pixels wait for the write buffer
+
+  // The unit.
+  Pool<Access> accesses_;
+  Pool<RunningTest> running_;
+  std::vector<std::uint32_t> in_unit_;         // warps, in the order in which they entered
+  std::deque<std::uint32_t> unit_waiters_;     // warps, in the order in which they are served
+  std::uint64_t entered_ = 0;                  // warps that have entered
+  std::uint64_t unit_slots_ = 0;               // taken ones
+  std::uint32_t last_slot_ = 0;                // whose warp was picked last; round_robin: where to look first
+  std::optional<std::uint64_t> last_entered_;  // Warp::entered of the warp picked last
+  std::uint32_t sending_ = no_access;          // the access whose lines are looked up
+  std::vector<WaitingTest> waiting_boxes_;
+  std::vector<WaitingTest> waiting_primitives_;
+  std::size_t new_boxes_ = 0;  // of the above, at the end, those that came in this cycle
+  std::size_t new_primitives_ = 0;
+  static constexpr std::uint32_t no_access = ~std::uint32_t{0};
+
+  struct Ending {
+    WarpLanes lanes;
+    LaneState from = LaneState::box;
+  };
+  std::vector<Ending> ending_;  // tests that end in this cycle
+  std::vector<std::uint32_t> completed_;
+};
+
+}  // namespace marti::processors::simt

@@ -1,0 +1,80 @@
+// A warp: its packet, its phase, and its part of the ray-tracing unit.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "processors/machine/packets.h"
+#include "processors/simt/node_time.h"
+#include "processors/walk/attribution.h"
+
+namespace marti::processors::simt {
+
+/// A bit for each lane of a warp.
+using Lanes = std::uint64_t;
+
+[[nodiscard]] inline std::int64_t count(Lanes lanes) { return std::popcount(lanes); }
+/// Calls use(lane number) for each lane, the lowest first.
+template <class Use>
+void for_each_lane(Lanes lanes, const Use& use) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    use(static_cast<std::uint32_t>(std::countr_zero(lanes)));
+  }
+}
+
+/// A line that is to be looked up.
+struct LineRead {
+  std::uint32_t unit = 0;  ///< address divided by MachineConfig::reference_bytes()
+  memory::RecordKind kind = memory::RecordKind::node;
+  walk::Origin origin{};  ///< of the first lane that reads it
+};
+
+struct PixelWrite {
+  memory::Address at = 0;
+  std::uint32_t bytes = 0;
+};
+
+/// What a warp does: it has no packet, or none is left; it is in a shader phase, or in a round of tracing
+/// without a unit; it waits for the unit, or is in it; it writes the pixels that have ended.
+enum class Does : std::uint8_t { nothing, shading, round, waits_for_unit, traces, writing };
+
+/// Of a phase, or a round, that computes: not at all, when its lines are there, when it gets a slot, now, or
+/// no longer.
+enum class Computing : std::uint8_t { none, reads, waits, runs, over };
+
+struct Warp {
+  Does does = Does::nothing;
+  machine::Packet packet;
+  std::int64_t packet_began = 0;
+  std::uint32_t turn = 0;
+  Lanes pixels = 0;   ///< lanes that have a pixel in this turn
+  Lanes rays = 0;     ///< lanes that hold a ray
+  Lanes members = 0;  ///< lanes of the phase or round, or those that trace
+  Lanes picked = 0;   ///< lanes of the trace phase, which make the shader phase after it
+  Lanes ended = 0;    ///< lanes whose pixels have ended in the shader phase
+
+  // Of a phase or a round.
+  std::int64_t began = 0;
+  ComputeCycles compute;
+  Computing computing = Computing::none;
+  std::vector<LineRead> lines;
+  std::size_t next_line = 0;
+  std::uint32_t pending = 0;  ///< lines that were looked up and are not there
+  std::uint32_t left = 0;     ///< of these, lines that left the node
+
+  // Of a trace phase.
+  std::int64_t trace_began = 0;
+  Lanes wants = 0;            ///< lanes that want a record, in the unit
+  Lanes tracing = 0;          ///< lanes that are not done
+  std::uint32_t slot = 0;     ///< of the unit
+  std::uint64_t entered = 0;  ///< how many warps had entered the unit before
+
+  std::vector<PixelWrite> writes;
+  std::size_t next_write = 0;
+
+  LaneState state = LaneState::held;  ///< of `state_lanes` lanes, which are counted as such; others are held
+  std::int64_t state_lanes = 0;
+};
+
+}  // namespace marti::processors::simt

@@ -1,0 +1,92 @@
+#include <string>
+
+#include "sim/config_errors.h"
+#include "studies/keys/key_parts.h"
+#include "studies/keys/machine_sections.h"
+
+namespace marti::studies::keys {
+
+using processors::machine::most_lanes;
+using processors::machine::most_mshrs;
+using processors::machine::most_test_units;
+using processors::machine::most_warps;
+using processors::machine::NodeKind;
+
+void declare_node_kind(sim::Schema& schema) {
+  schema.choice(
+      "node.kind", "core", names(processors::machine::node_kind_names),
+      "core: a scalar processor that works in order; simt: warps of lanes beside a unit that traces "
+      "rays, as GPUs have them (docs/rt-unit.md)");
+}
+
+void declare_simt_keys(sim::Schema& schema) {
+  schema.section("simt", "a SIMT node: its warps and their shader code");
+  schema.integer("simt.lanes", 32, {1, most_lanes}, "", "lanes of a warp, each of which takes a pixel");
+  schema.integer("simt.warps", 16, {1, most_warps}, "",
+                 "warps of a node; each asks the host for packets of its own");
+  schema.integer("simt.issue", 1, {1, most_warps}, "", "warps whose shader code computes at once");
+  schema.choice("simt.reconverge", "kind", names(processors::machine::reconverge_names),
+                "which of a warp's lanes that hold a ray trace together; kind: those of the least bounce and "
+                "kind of ray; any: all");
+  schema.section("rt", "the ray-tracing unit of a SIMT node");
+  schema.integer("rt.warps", 4, {0, most_warps}, "",
+                 "warps in the unit at once; 0: there is no unit, and rays are traced by shader code");
+  schema.choice("rt.scheduler", "oldest", names(processors::machine::rt_scheduler_names),
+                "which warp asks for a record next; oldest: the one that entered first; greedy: the one that "
+                "asked last, then the oldest; round_robin: by turns");
+  schema.choice("rt.coalesce", "warp", names(processors::machine::rt_coalesce_names),
+                "which lanes that want the same record share one access: none, those of a warp, or of the "
+                "whole unit");
+  cycles(schema, "rt.box_cycles", 8, "cycles to test the boxes of a branch");
+  cycles(schema, "rt.leaf_cycles", 4, "cycles to take in a leaf's record");
+  cycles(schema, "rt.triangle_cycles", 8, "cycles to test a triangle");
+  cycles(schema, "rt.quadric_cycles", 16, "cycles to test a sphere, cylinder or cone");
+  schema.integer("rt.box_units", 0, {0, most_test_units}, "",
+                 "tests of branches and leaves that may begin in a cycle; 0: any number");
+  schema.integer("rt.triangle_units", 0, {0, most_test_units}, "",
+                 "tests of primitives that may begin in a cycle; 0: any number");
+}
+
+void declare_simt_cache_keys(sim::Schema& schema) {
+  schema.integer("cache.ports", 1, {1, processors::machine::most_cache_ports}, "",
+                 "SIMT nodes: lines looked up in a cycle");
+  schema.integer("cache.mshrs", 64, {1, most_mshrs}, "", "SIMT nodes: lines under way at a time");
+  schema.size("cache.sector", "0 B", {"0 B", "1 GiB"},
+              "SIMT nodes: bytes fetched on a miss, a power of two that divides the line into at most 8; 0: "
+              "the line");
+}
+
+void read_simt(sim::Config& config, processors::machine::MachineConfig& machine) {
+  machine.kind = config.choice_as<NodeKind>("node.kind");
+  if (machine.kind == NodeKind::core) {
+    const std::string_view reason = "only node.kind = \"simt\" has warps of lanes";
+    for (const std::string_view key : {"simt", "rt", "cache.ports", "cache.mshrs", "cache.sector"}) {
+      config.mark_unused_reason(key, reason, "node.kind");
+    }
+    return;
+  }
+  processors::machine::SimtConfig& simt = machine.simt;
+  simt.lanes = count(config, "simt.lanes");
+  simt.warps = count(config, "simt.warps");
+  simt.issue = count(config, "simt.issue");
+  simt.reconverge = config.choice_as<processors::machine::Reconverge>("simt.reconverge");
+  simt.ports = count(config, "cache.ports");
+  simt.mshrs = count(config, "cache.mshrs");
+  simt.sector = static_cast<std::uint32_t>(config.size("cache.sector"));
+  processors::machine::RtUnitConfig& rt = machine.rt;
+  rt.warps = count(config, "rt.warps");
+  rt.coalesce = config.choice_as<processors::machine::RtCoalesce>("rt.coalesce");
+  if (rt.warps > 0) {
+    rt.scheduler = config.choice_as<processors::machine::RtScheduler>("rt.scheduler");
+    rt.box_cycles = config.integer("rt.box_cycles");
+    rt.leaf_cycles = config.integer("rt.leaf_cycles");
+    rt.triangle_cycles = config.integer("rt.triangle_cycles");
+    rt.quadric_cycles = config.integer("rt.quadric_cycles");
+    rt.box_units = count(config, "rt.box_units");
+    rt.triangle_units = count(config, "rt.triangle_units");
+  }
+  config.mark_unused_reason("rt", "there is no unit with rt.warps = 0", "rt.warps");
+  sim::with_places(config, [&] { processors::machine::check_simt(machine); });
+}
+
+}  // namespace marti::studies::keys

@@ -1,0 +1,1108 @@
+#include "tests/support/naive_simt.h"
+
+#include <algorithm>
+#include <deque>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "processors/node/memory_system.h"
+#include "processors/node/node_array.h"
+#include "processors/walk/local_memory.h"
+#include "processors/walk/node_caches.h"
+#include "sim/engine.h"
+#include "tests/support/naive_simt_log.h"
+#include "tests/support/naive_tags.h"
+
+namespace marti::test {
+
+namespace {
+
+using processors::node::EventClass;
+using processors::replay::MachineResult;
+using Cycle = std::int64_t;
+
+constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+
+// A line on its way to the lanes that looked it up.
+struct Line {
+  Cycle there = never;
+  bool left = false;  // the node, to bring it
+  bool came = false;  // step 2 of a cycle has seen it
+};
+using Lines = std::vector<std::shared_ptr<Line>>;
+
+struct LookUp {
+  memory::RecordKind kind;
+  std::uint64_t line;
+};
+
+// Lines that are looked up one after the other: of an access of the unit, or of a phase or round.
+struct Reading {
+  std::deque<LookUp> left;
+  Lines lines;
+  [[nodiscard]] bool done() const {
+    return left.empty() &&
+           std::all_of(lines.begin(), lines.end(), [](const auto& line) { return line->came; });
+  }
+  [[nodiscard]] bool waits_for_memory() const {
+    return std::any_of(lines.begin(), lines.end(),
+                       [](const auto& line) { return line->left && !line->came; });
+  }
+};
+
+struct Lane {
+  bool pixel = false;  // in this turn
+  std::size_t number = 0;
+  std::span<const std::uint32_t> words;
+  std::size_t next = 0;
+  std::optional<std::uint32_t> ray;  // the operand of the `ray` step whose visits come next
+  bool picked = false;
+  std::vector<NaiveVisit> visits;
+  std::size_t at = 0;
+  // In the unit.
+  enum class In { none, wants, reads, waits, tests, done } in = In::none;
+  std::shared_ptr<Reading> access;
+  Cycle came = 0;  // its record
+  Cycle ends = 0;  // its test
+  [[nodiscard]] const NaiveRecord& record() const { return *visits[at].record; }
+};
+
+struct Phase {
+  Cycle began = 0;
+  bool round = false;
+  std::vector<std::size_t> lanes;
+  Reading reading;
+  NaiveCycles cycles;
+  std::optional<Cycle> slot;  // when it got one
+  bool computed = false;
+  // A round computes with what it has read.
+  [[nodiscard]] bool wants_slot() const { return !slot && !computed && (!round || reading.done()); }
+  [[nodiscard]] bool computes() const { return slot && !computed; }
+};
+
+struct Warp {
+  enum class Does { ask, wait_for_packet, phase, wait_for_unit, unit, left_unit, write, written, nothing };
+  Does does = Does::ask;
+  bool asked = false;
+  sim::Ticks start = 0;
+  Cycle reached = 0;  // by the packet
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pixels;
+  std::size_t turn = 0;
+  std::vector<Lane> lanes;
+  Phase phase;
+  Cycle trace_began = 0;
+  std::uint64_t entered = 0;  // the unit: a number that grows
+  std::deque<memory::Transaction> writes;
+  [[nodiscard]] bool has_packet() const {
+    return does != Does::ask && does != Does::wait_for_packet && does != Does::nothing;
+  }
+};
+
+struct Register {
+  std::shared_ptr<Line> line;  // null: free
+  std::size_t cache = 0;
+  std::uint64_t number = 0;
+  Cycle asked = 0;
+};
+
+struct WriteEntry {
+  Cycle posted = -1;
+  sim::Ticks end = 0;
+};
+
+struct Node {
+  Cycle cycle = 0;
+  std::vector<Warp> warps;
+  std::vector<NaiveTags> caches;
+  std::vector<NaiveTags> second;  // one, or none
+  memory::CacheCounters second_counts;
+  std::vector<Register> registers;
+  Lines coming;                                  // by no register
+  std::vector<std::optional<std::size_t>> unit;  // the warp in each slot
+  std::uint64_t entries = 0;
+  std::optional<std::size_t> picked_warp;
+  std::size_t next_slot = 0;
+  std::vector<std::shared_ptr<Reading>> accesses;  // not complete
+  std::shared_ptr<Reading> sending;
+  std::optional<std::size_t> stuck;             // the warp whose phase found no register
+  std::optional<memory::RecordKind> looked_up;  // in this cycle
+  std::deque<std::size_t> writers;              // warps
+  std::vector<WriteEntry> buffer;               // the entry to take next comes first
+  std::deque<std::size_t> posted;               // entries whose end is not known
+  std::deque<memory::Transaction> to_post;      // in this cycle
+  std::size_t next_entry = 0;
+  Cycle memory_cycles = 0;
+  memory::Service parts;
+  NodeStatistics statistics;
+  processors::walk::SimtCounts counts;
+  bool finished = false;
+};
+
+class NaiveSimt final : public sim::EventHandler {
+ public:
+  NaiveSimt(const WorkLog& log, const MachineConfig& machine)
+      : log_(log),
+        machine_(machine),
+        layout_(layout_of(log, machine)),
+        program_(log, machine, layout_),
+        ticks_(step_ticks(machine, log)),
+        period_(machine.clock.period()),
+        unit_(machine.simt.sector != 0 ? machine.simt.sector : machine.cache.cache.line),
+        packets_(log.width, log.height, machine.packets),
+        host_(machine.host, packets_.size(), machine.all_nodes()),
+        nodes_(machine.all_nodes()) {
+    for (std::uint32_t number = 0; number < nodes_.size(); ++number) {
+      Node& node = nodes_[number];
+      node.warps.resize(machine.simt.warps);
+      for (const FirstLevelCache& first : first_level_caches(machine.cache)) {
+        node.caches.emplace_back(first.cache, number);
+      }
+      if (machine.l2.sharing == SecondLevel::private_caches) {
+        node.second.emplace_back(second_level_cache(machine), number);
+      }
+      node.registers.resize(machine.simt.mshrs);
+      node.unit.resize(machine.rt.warps);
+      node.buffer.resize(machine.write_buffer);
+    }
+    for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
+                               EventClass::write, EventClass::memory}) {
+      engine_.attach(static_cast<std::uint8_t>(c), *this);
+    }
+    clients_.resize(machine.clusters);
+    const std::uint32_t ports = machine.nodes * machine.simt.mshrs;
+    for (std::uint32_t cluster = 0; cluster < machine.clusters; ++cluster) {
+      clients_[cluster].all = this;
+      clients_[cluster].first = cluster * machine.nodes;
+      interconnects_.push_back(processors::node::make_memory_system(
+          machine, {engine_, clients_[cluster], static_cast<std::uint8_t>(EventClass::reply), cluster * ports,
+                    ports, static_cast<std::uint8_t>(EventClass::memory), true}));
+    }
+  }
+
+  MachineResult run() {
+    for (std::uint32_t number = 0; number < nodes_.size(); ++number) {
+      post(EventClass::step, 0, number);
+    }
+    engine_.run(std::numeric_limits<std::uint64_t>::max());
+    MachineResult result;
+    result.end = end_;
+    result.host = host_.statistics();
+    for (Node& node : nodes_) {
+      spend(node, Activity::idle, end_ - node.statistics.finish);
+      divide_memory(node);
+      result.nodes.push_back(node.statistics);
+      result.simt.nodes.push_back(node.counts);
+      if (!node.second.empty()) {
+        result.l2.caches.push_back(node.second_counts);
+      }
+    }
+    for (const auto& interconnect : interconnects_) {
+      result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
+      result.clusters.back().dram = interconnect->dram_statistics();
+      if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
+        result.l2.caches.push_back(cache->lookups);
+        result.l2.waits.push_back(cache->waits);
+      }
+    }
+    result.packets = packets_.size();
+    result.pixels = std::uint64_t{log_.width} * log_.height;
+    result.database_bytes = layout_.database_bytes();
+    result.copies = replicated() ? machine_.all_nodes() : machine_.clusters;
+    result.leaf_records = !accel::walks_bvh(log_.traversal);
+    result.unloaded_miss = interconnects_.front()->unloaded_read(unit_);
+    return result;
+  }
+
+  void handle(const sim::Event& event) override {
+    const std::uint32_t component = event.component();
+    const std::uint32_t ports = machine_.nodes * machine_.simt.mshrs;
+    switch (static_cast<EventClass>(event.event_class())) {
+      case EventClass::step:
+        begin_cycle(component);
+        break;
+      case EventClass::dispatch:
+        ask(component % machine_.all_nodes(), component / machine_.all_nodes());
+        break;
+      case EventClass::reply:
+        interconnects_[component / ports]->reply(component % ports);
+        break;
+      case EventClass::read:
+        look_up_lines(component);
+        break;
+      case EventClass::write:
+        end_cycle(component);
+        break;
+      case EventClass::memory:
+        interconnects_[component / ports]->proceed(component % ports, event.sequence());
+        break;
+    }
+  }
+
+ private:
+  struct Client final : memory::InterconnectClient {
+    NaiveSimt* all = nullptr;
+    std::uint32_t first = 0;
+    void read_done(std::uint32_t port, const memory::Service& service) override {
+      Node& node = all->nodes_[first + port / all->machine_.simt.mshrs];
+      all->arrives(node, node.registers[port % all->machine_.simt.mshrs], service);
+    }
+    void write_done(std::uint32_t port, sim::Ticks done) override {
+      Node& node = all->nodes_[first + port / all->machine_.simt.mshrs];
+      all->end_ = std::max(all->end_, done);
+      node.buffer[node.posted.front()].end = done;
+      node.posted.pop_front();
+    }
+  };
+
+  static memory::Layout layout_of(const WorkLog& log, const MachineConfig& machine) {
+    std::optional<processors::walk::TreePlan> none;
+    return processors::walk::layout_of(log, machine, none);
+  }
+  void post(EventClass c, sim::Ticks time, std::uint32_t component) {
+    engine_.post(sim::Event::make(time, static_cast<std::uint8_t>(c), component));
+  }
+  static void spend(Node& node, Activity activity, sim::Ticks time) {
+    node.statistics.time[static_cast<std::size_t>(activity)] += time;
+  }
+  [[nodiscard]] bool replicated() const { return machine_.placement == Placement::replicated; }
+  [[nodiscard]] bool has_unit() const { return machine_.rt.warps > 0; }
+  [[nodiscard]] Cycle cycle_at_or_after(sim::Ticks time) const { return (time + period_ - 1) / period_; }
+
+  // ---- steps 1 to 7
+
+  void begin_cycle(std::uint32_t number) {
+    Node& node = nodes_[number];
+    const Cycle now = node.cycle;
+    node.looked_up.reset();
+    for (Warp& warp : node.warps) {
+      if (warp.does == Warp::Does::wait_for_packet && warp.start <= now * period_) {
+        begin_packet(node, warp);
+      }
+      if (warp.phase.computes() && *warp.phase.slot + warp.phase.cycles.all() <= now) {
+        warp.phase.computed = true;
+      }
+    }
+    lines_arrive(node);
+    begin_tests(node);
+    end_tests(node);
+    leave_and_enter(node);
+    while (!node.writers.empty() && takes_entries(node, node.warps[node.writers.front()])) {
+      node.writers.pop_front();
+    }
+    for (std::size_t warp = 0; warp < node.warps.size(); ++warp) {
+      advance(node, warp);
+    }
+    give_slots(node);
+    post_requests(number);
+    post(EventClass::write, engine_.now(), number);
+    post(EventClass::read, engine_.now(), number);
+  }
+
+  void lines_arrive(Node& node) {
+    const auto see = [&](Line& line) { line.came = line.there <= node.cycle; };
+    for (const auto& line : node.coming) {
+      see(*line);
+    }
+    std::erase_if(node.coming, [](const auto& line) { return line->came; });
+    for (Register& one : node.registers) {
+      if (one.line) {
+        see(*one.line);
+        if (one.line->came) {
+          one.line = nullptr;
+        }
+      }
+    }
+    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+      if (lane.in == Lane::In::reads && lane.access->done()) {
+        lane.access = nullptr;
+        lane.came = node.cycle;
+        lane.in = Lane::In::waits;
+      }
+    });
+  }
+
+  static bool of_box(const Lane& lane) {
+    return lane.record().test == NaiveTest::box || lane.record().test == NaiveTest::leaf;
+  }
+  [[nodiscard]] Cycle test_cycles(NaiveTest test) const {
+    switch (test) {
+      case NaiveTest::box:
+        return machine_.rt.box_cycles;
+      case NaiveTest::leaf:
+        return machine_.rt.leaf_cycles;
+      case NaiveTest::triangle:
+        return machine_.rt.triangle_cycles;
+      case NaiveTest::quadric:
+        return machine_.rt.quadric_cycles;
+      case NaiveTest::none:
+        break;
+    }
+    return 0;
+  }
+
+  void begin_tests(Node& node) {
+    std::vector<std::tuple<Cycle, std::uint64_t, std::size_t, Lane*>> waiting;
+    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+      if (lane.in == Lane::In::waits) {
+        waiting.emplace_back(lane.came, warp.entered, lane.number, &lane);
+      }
+    });
+    std::sort(waiting.begin(), waiting.end());
+    std::uint32_t boxes = 0;
+    std::uint32_t primitives = 0;
+    for (const auto& [came, entered, number, lane] : waiting) {
+      const Cycle cycles = test_cycles(lane->record().test);
+      if (cycles > 0) {
+        std::uint32_t& used = of_box(*lane) ? boxes : primitives;
+        const std::uint32_t units = of_box(*lane) ? machine_.rt.box_units : machine_.rt.triangle_units;
+        if (units != 0 && used == units) {
+          continue;
+        }
+        ++used;
+      }
+      lane->in = Lane::In::tests;
+      lane->ends = node.cycle + cycles;
+    }
+  }
+
+  void end_tests(Node& node) {
+    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+      if (lane.in == Lane::In::tests && lane.ends <= node.cycle) {
+        ++lane.at;
+        lane.in = Lane::In::wants;
+        if (lane.at == lane.visits.size()) {
+          lane.in = Lane::In::done;
+          count_ray(node, warp);
+        }
+      }
+    });
+  }
+
+  static void count_ray(Node& node, const Warp& warp) {
+    const Cycle cycles = node.cycle - warp.trace_began;
+    ++node.counts.rays;
+    node.counts.ray_cycles += cycles;
+    node.counts.longest_ray = std::max(node.counts.longest_ray, cycles);
+  }
+
+  void leave_and_enter(Node& node) {
+    std::optional<std::size_t> leaves;  // slot
+    for (std::size_t slot = 0; slot < node.unit.size(); ++slot) {
+      if (!node.unit[slot]) {
+        continue;
+      }
+      const Warp& warp = node.warps[*node.unit[slot]];
+      const bool over = std::all_of(warp.lanes.begin(), warp.lanes.end(), [](const Lane& lane) {
+        return !lane.picked || lane.in == Lane::In::done;
+      });
+      if (over && (!leaves || warp.entered < node.warps[*node.unit[*leaves]].entered)) {
+        leaves = slot;
+      }
+    }
+    if (leaves) {
+      if (node.picked_warp == node.unit[*leaves]) {
+        node.picked_warp.reset();
+      }
+      node.warps[*node.unit[*leaves]].does = Warp::Does::left_unit;
+      node.unit[*leaves].reset();
+    }
+    const auto free = std::find(node.unit.begin(), node.unit.end(), std::nullopt);
+    std::optional<std::size_t> enters;
+    for (std::size_t number = 0; number < node.warps.size(); ++number) {
+      const Warp& warp = node.warps[number];
+      if (warp.does == Warp::Does::wait_for_unit && warp.trace_began < node.cycle &&
+          (!enters || warp.trace_began < node.warps[*enters].trace_began)) {
+        enters = number;
+      }
+    }
+    if (free != node.unit.end() && enters) {
+      Warp& warp = node.warps[*enters];
+      *free = *enters;
+      warp.does = Warp::Does::unit;
+      warp.entered = node.entries++;
+      ++node.counts.traces;
+      for (Lane& lane : warp.lanes) {
+        lane.in = !lane.picked ? Lane::In::none : lane.visits.empty() ? Lane::In::done : Lane::In::wants;
+      }
+    }
+  }
+
+  template <class Visit>
+  static void for_lanes_in_unit(Node& node, const Visit& visit) {
+    for (const std::optional<std::size_t>& slot : node.unit) {
+      if (slot) {
+        for (Lane& lane : node.warps[*slot].lanes) {
+          if (lane.picked) {
+            visit(node.warps[*slot], lane);
+          }
+        }
+      }
+    }
+  }
+
+  void give_slots(Node& node) const {
+    for (;;) {
+      Warp* best = nullptr;
+      std::uint32_t used = 0;
+      for (Warp& warp : node.warps) {
+        if (warp.does == Warp::Does::phase) {
+          used += warp.phase.computes() ? 1 : 0;
+          if (warp.phase.wants_slot() && (best == nullptr || warp.phase.began < best->phase.began)) {
+            best = &warp;
+          }
+        }
+      }
+      if (best == nullptr || used == machine_.simt.issue) {
+        return;
+      }
+      best->phase.slot = node.cycle;
+    }
+  }
+
+  void post_requests(std::uint32_t number) {
+    Node& node = nodes_[number];
+    for (std::uint32_t warp = 0; warp < node.warps.size(); ++warp) {
+      if (node.warps[warp].does == Warp::Does::ask && !std::exchange(node.warps[warp].asked, true)) {
+        post(EventClass::dispatch, engine_.now(), warp * machine_.all_nodes() + number);
+      }
+    }
+  }
+
+  void ask(std::uint32_t number, std::uint32_t which) {
+    Node& node = nodes_[number];
+    Warp& warp = node.warps[which];
+    warp.asked = false;
+    const auto grant = host_.next(number, engine_.now());
+    if (!grant) {
+      warp.does = Warp::Does::nothing;
+      node.finished = std::all_of(node.warps.begin(), node.warps.end(),
+                                  [](const Warp& other) { return other.does == Warp::Does::nothing; });
+      if (node.finished) {
+        node.statistics.finish = engine_.now();
+        node.counts.cycles = node.cycle;
+        end_ = std::max(end_, engine_.now());
+      }
+      return;
+    }
+    ++node.statistics.packets;
+    warp.does = Warp::Does::wait_for_packet;
+    warp.start = grant->start;
+    warp.pixels.clear();
+    const Packet packet = packets_[grant->packet];
+    for (std::uint32_t y = packet.y0; y < packet.y1; ++y) {
+      for (std::uint32_t x = packet.x0; x < packet.x1; ++x) {
+        warp.pixels.emplace_back(x, y);
+      }
+    }
+    if (warp.start <= engine_.now()) {
+      begin_packet(node, warp);
+      advance(node, which);
+      give_slots(node);
+      post_requests(number);
+    }
+  }
+
+  // ---- what warps do one after the other
+
+  void begin_packet(Node& node, Warp& warp) {
+    warp.reached = node.cycle;
+    warp.turn = 0;
+    begin_turn(node, warp);
+  }
+
+  void begin_turn(Node& node, Warp& warp) {
+    warp.lanes.assign(machine_.simt.lanes, Lane{});
+    std::vector<std::size_t> lanes;
+    for (std::size_t number = 0; number < warp.lanes.size(); ++number) {
+      const std::size_t pixel = warp.turn * machine_.simt.lanes + number;
+      warp.lanes[number].number = number;
+      if (pixel < warp.pixels.size()) {
+        warp.lanes[number].pixel = true;
+        warp.lanes[number].words = log_.pixel(warp.pixels[pixel].first, warp.pixels[pixel].second);
+        lanes.push_back(number);
+      }
+    }
+    begin_shader(node, warp, lanes);
+  }
+
+  void read_lines(const NaiveRecord& record, std::deque<LookUp>& to) const {
+    for (std::uint64_t line = record.address / unit_; line <= (record.address + record.bytes - 1) / unit_;
+         ++line) {
+      to.push_back({record.kind, line});
+    }
+  }
+
+  void begin_shader(Node& node, Warp& warp, const std::vector<std::size_t>& lanes) {
+    Phase phase;
+    phase.began = node.cycle;
+    phase.lanes = lanes;
+    NaiveMost most;
+    std::deque<LookUp> reads;
+    for (const std::size_t number : lanes) {
+      Lane& lane = warp.lanes[number];
+      lane.ray.reset();
+      StepCounts steps;
+      while (!lane.ray && lane.next < lane.words.size()) {
+        const std::uint32_t* const word = &lane.words[lane.next];
+        program_.count(word, steps);
+        if (step_of(*word) == Step::ray) {
+          lane.ray = operand_of(*word);
+        } else if (step_of(*word) == Step::shade) {
+          read_lines(program_.material(operand_of(*word)), reads);
+        } else if (step_of(*word) == Step::texel) {
+          read_lines(program_.texel(operand_of(*word), word[1]), reads);
+        }
+        lane.next += step_words(word);
+      }
+      if (!lane.ray && machine_.pixels == Pixels::written) {
+        ++steps.pixels;
+        const std::size_t pixel = warp.turn * machine_.simt.lanes + number;
+        const auto [x, y] = warp.pixels[pixel];
+        add_write(warp, layout_.address(memory::RecordKind::pixel, std::uint64_t{y} * log_.width + x));
+      }
+      most.lane(steps);
+      sim::merge(node.statistics.steps, steps);
+    }
+    for (const LookUp& read : reads) {
+      const auto known = [&](const LookUp& other) { return other.line == read.line; };
+      if (std::none_of(phase.reading.left.begin(), phase.reading.left.end(), known)) {
+        phase.reading.left.push_back(read);
+      }
+    }
+    phase.cycles = most.cycles(ticks_, period_);
+    phase.computed = phase.cycles.all() == 0;
+    warp.phase = phase;
+    warp.does = Warp::Does::phase;
+  }
+
+  // One write for each pixel; they are joined when they are posted.
+  void add_write(Warp& warp, memory::Address address) const {
+    warp.writes.push_back({0, address, machine_.layout.pixel_bytes});
+  }
+  void join_writes(Warp& warp) const {
+    std::sort(warp.writes.begin(), warp.writes.end(),
+              [](const auto& a, const auto& b) { return a.address < b.address; });
+    std::deque<memory::Transaction> joined;
+    for (const memory::Transaction& write : warp.writes) {
+      const std::uint32_t line = machine_.cache.cache.line;
+      if (!joined.empty() && joined.back().address + joined.back().bytes == write.address &&
+          joined.back().address / line == (write.address + write.bytes - 1) / line) {
+        joined.back().bytes += write.bytes;
+      } else {
+        joined.push_back(write);
+      }
+    }
+    warp.writes = joined;
+  }
+
+  // What follows a phase that is done, as often as it takes no time.
+  void advance(Node& node, std::size_t number) {
+    Warp& warp = node.warps[number];
+    for (;;) {
+      if (warp.does == Warp::Does::left_unit) {
+        end_trace(node, warp);
+      } else if (warp.does == Warp::Does::written) {
+        go_on(node, warp);
+      } else if (warp.does == Warp::Does::phase && warp.phase.computed && warp.phase.reading.done()) {
+        if (warp.phase.round) {
+          end_round(node, warp);
+        } else {
+          end_shader(node, number);
+        }
+      } else {
+        return;
+      }
+    }
+  }
+
+  void end_shader(Node& node, std::size_t number) {
+    Warp& warp = node.warps[number];
+    if (warp.writes.empty()) {
+      go_on(node, warp);
+      return;
+    }
+    join_writes(warp);
+    warp.does = Warp::Does::write;
+    if (!node.writers.empty() || !takes_entries(node, warp)) {
+      node.writers.push_back(number);
+    }
+  }
+  // Posts the writes of a warp for which there is room; whether these are all.
+  bool takes_entries(Node& node, Warp& warp) const {
+    while (!warp.writes.empty()) {
+      WriteEntry& entry = node.buffer[node.next_entry];
+      if (entry.posted == node.cycle || entry.end > engine_.now()) {
+        return false;
+      }
+      entry = {node.cycle, never};
+      node.posted.push_back(node.next_entry);
+      node.next_entry = (node.next_entry + 1) % node.buffer.size();
+      node.to_post.push_back(warp.writes.front());
+      warp.writes.pop_front();
+    }
+    warp.does = Warp::Does::written;
+    return true;
+  }
+
+  [[nodiscard]] static bool holds_ray(const Warp& warp) {
+    return std::any_of(warp.lanes.begin(), warp.lanes.end(),
+                       [](const Lane& lane) { return lane.ray.has_value(); });
+  }
+  [[nodiscard]] bool is_last_turn(const Warp& warp) const {
+    return (warp.turn + 1) * machine_.simt.lanes >= warp.pixels.size();
+  }
+  static void count_warp(Node& node, const Warp& warp) {
+    node.counts.longest_warp = std::max(node.counts.longest_warp, node.cycle - warp.reached);
+  }
+
+  void go_on(Node& node, Warp& warp) {
+    if (holds_ray(warp)) {
+      begin_trace(node, warp);
+    } else if (!is_last_turn(warp)) {
+      ++warp.turn;
+      begin_turn(node, warp);
+    } else {
+      count_warp(node, warp);
+      warp.does = Warp::Does::ask;
+    }
+  }
+
+  void begin_trace(Node& node, Warp& warp) {
+    std::optional<std::pair<std::uint32_t, std::size_t>> least;
+    const auto order = [](const Lane& lane) {
+      return std::pair(bounce_of(*lane.ray), ray_number_of(*lane.ray));
+    };
+    for (const Lane& lane : warp.lanes) {
+      if (lane.ray && (!least || order(lane) < *least)) {
+        least = order(lane);
+      }
+    }
+    warp.trace_began = node.cycle;
+    bool any = false;
+    for (Lane& lane : warp.lanes) {
+      lane.picked = lane.ray && (machine_.simt.reconverge == Reconverge::any || order(lane) == *least);
+      lane.visits.clear();
+      lane.at = 0;
+      if (lane.picked) {
+        lane.visits = program_.visits(lane.words, lane.next, node.statistics.steps);
+        if (has_unit()) {
+          std::erase_if(lane.visits, [](const NaiveVisit& visit) { return !visit.record; });
+        }
+        any = any || !lane.visits.empty();
+      }
+    }
+    if (!any) {
+      end_trace(node, warp);
+    } else if (has_unit()) {
+      warp.does = Warp::Does::wait_for_unit;
+    } else {
+      begin_round(node, warp);
+    }
+  }
+
+  void end_trace(Node& node, Warp& warp) {
+    std::vector<std::size_t> lanes;
+    for (Lane& lane : warp.lanes) {
+      lane.in = Lane::In::none;
+      if (std::exchange(lane.picked, false)) {
+        lanes.push_back(lane.number);
+      }
+    }
+    begin_shader(node, warp, lanes);
+  }
+
+  // ---- warps that trace themselves
+
+  void begin_round(Node& node, Warp& warp) {
+    Phase phase;
+    phase.began = node.cycle;
+    phase.round = true;
+    NaiveMost most;
+    std::vector<NaiveRecord> accesses;
+    for (Lane& lane : warp.lanes) {
+      if (!lane.picked || lane.at == lane.visits.size()) {
+        continue;
+      }
+      phase.lanes.push_back(lane.number);
+      const NaiveVisit& visit = lane.visits[lane.at];
+      most.lane(visit.steps);
+      if (!visit.record) {
+        continue;
+      }
+      ++node.counts.records;
+      const auto same = std::find_if(accesses.begin(), accesses.end(), [&](const NaiveRecord& other) {
+        return other.address == visit.record->address;
+      });
+      if (same == accesses.end() || machine_.rt.coalesce == RtCoalesce::none) {
+        accesses.push_back(*visit.record);
+        ++node.counts.accesses;
+      } else {
+        same->bytes = std::max(same->bytes, visit.record->bytes);
+      }
+    }
+    for (const NaiveRecord& access : accesses) {
+      read_lines(access, phase.reading.left);
+    }
+    phase.cycles = most.cycles(ticks_, period_);
+    phase.computed = phase.cycles.all() == 0;
+    warp.phase = phase;
+    warp.does = Warp::Does::phase;
+  }
+
+  void end_round(Node& node, Warp& warp) {
+    bool over = true;
+    for (const std::size_t number : warp.phase.lanes) {
+      Lane& lane = warp.lanes[number];
+      if (++lane.at < lane.visits.size()) {
+        over = false;
+      } else if (lane.visits.front().record) {
+        count_ray(node, warp);
+      }
+    }
+    if (over) {
+      end_trace(node, warp);
+    } else {
+      begin_round(node, warp);
+    }
+  }
+
+  // ---- step 8
+
+  void look_up_lines(std::uint32_t number) {
+    Node& node = nodes_[number];
+    if (node.finished) {
+      return;
+    }
+    for (std::uint32_t port = 0; port < machine_.simt.ports; ++port) {
+      Reading* const reading = next_reading(node);
+      if (reading == nullptr) {
+        break;
+      }
+      const LookUp wanted = reading->left.front();
+      const auto line = look_up(number, wanted);
+      if (!line) {
+        ++node.counts.full_cycles;
+        break;
+      }
+      node.looked_up = node.looked_up.value_or(wanted.kind);
+      reading->lines.push_back(line);
+      reading->left.pop_front();
+      node.stuck.reset();
+      if (reading == node.sending.get() && reading->left.empty()) {
+        node.sending = nullptr;
+      }
+    }
+  }
+
+  // What the next line is looked up for; null: nothing.
+  Reading* next_reading(Node& node) {
+    if (node.stuck) {
+      return &node.warps[*node.stuck].phase.reading;
+    }
+    if (!node.sending) {
+      node.sending = next_access(node);
+    }
+    if (node.sending) {
+      return node.sending.get();
+    }
+    for (std::size_t number = 0; number < node.warps.size(); ++number) {
+      const Warp& warp = node.warps[number];
+      if (warp.does == Warp::Does::phase && !warp.phase.reading.left.empty() &&
+          (!node.stuck || warp.phase.began < node.warps[*node.stuck].phase.began)) {
+        node.stuck = number;  // unless the look-up succeeds
+      }
+    }
+    return node.stuck ? &node.warps[*node.stuck].phase.reading : nullptr;
+  }
+
+  static Lane* wanting_lane(Node& node, std::size_t slot) {
+    if (node.unit[slot]) {
+      for (Lane& lane : node.warps[*node.unit[slot]].lanes) {
+        if (lane.in == Lane::In::wants) {
+          return &lane;
+        }
+      }
+    }
+    return nullptr;
+  }
+  std::optional<std::size_t> pick_slot(Node& node) const {
+    std::optional<std::size_t> oldest;
+    for (std::size_t i = 0; i < node.unit.size(); ++i) {
+      const std::size_t slot = (node.next_slot + i) % node.unit.size();
+      if (wanting_lane(node, slot) == nullptr) {
+        continue;
+      }
+      if (machine_.rt.scheduler == RtScheduler::round_robin ||
+          (machine_.rt.scheduler == RtScheduler::greedy && node.unit[slot] == node.picked_warp)) {
+        return slot;
+      }
+      if (!oldest || node.warps[*node.unit[slot]].entered < node.warps[*node.unit[*oldest]].entered) {
+        oldest = slot;
+      }
+    }
+    return oldest;
+  }
+
+  std::shared_ptr<Reading> next_access(Node& node) const {
+    const std::optional<std::size_t> slot = pick_slot(node);
+    if (!slot) {
+      return nullptr;
+    }
+    const std::size_t picked = *node.unit[*slot];
+    node.picked_warp = picked;
+    node.next_slot = (*slot + 1) % node.unit.size();
+    Lane& first = *wanting_lane(node, *slot);
+    auto access = std::make_shared<Reading>();
+    NaiveRecord longest = first.record();
+    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+      const bool joins = machine_.rt.coalesce == RtCoalesce::unit ||
+                         (machine_.rt.coalesce == RtCoalesce::warp && &warp == &node.warps[picked]);
+      if (&lane == &first ||
+          (joins && lane.in == Lane::In::wants && lane.record().address == longest.address)) {
+        longest.bytes = std::max(longest.bytes, lane.record().bytes);
+        lane.in = Lane::In::reads;
+        lane.access = access;
+        ++node.counts.records;
+      }
+    });
+    ++node.counts.accesses;
+    read_lines(longest, access->left);
+    return access;
+  }
+
+  // Null: there is no register.
+  std::shared_ptr<Line> look_up(std::uint32_t number, const LookUp& wanted) {
+    Node& node = nodes_[number];
+    const std::size_t cache =
+        node.caches.size() > 1 ? processors::walk::split_cache_of[static_cast<std::size_t>(wanted.kind)] : 0;
+    NaiveTags& tags = node.caches[cache];
+    const std::uint64_t sectors = machine_.cache.cache.line / unit_;
+    const auto refer = [&] { (void)tags.look_up(wanted.line / sectors, wanted.line % sectors); };
+    for (const Register& one : node.registers) {
+      if (one.line && one.cache == cache && one.number == wanted.line) {
+        refer();
+        ++hits_of(node.statistics, wanted.kind);
+        ++node.counts.joined;
+        return one.line;
+      }
+    }
+    const auto line = std::make_shared<Line>();
+    if (tags.holds(wanted.line / sectors, wanted.line % sectors)) {
+      refer();
+      ++hits_of(node.statistics, wanted.kind);
+      line->there = node.cycle + std::max<Cycle>(1, machine_.cache.hit_cycles);
+      node.coming.push_back(line);
+      return line;
+    }
+    const auto free = std::find_if(node.registers.begin(), node.registers.end(),
+                                   [](const Register& one) { return !one.line; });
+    if (free == node.registers.end()) {
+      return nullptr;
+    }
+    refer();
+    ++misses_of(node.statistics, wanted.kind);
+    *free = {line, cache, wanted.line, node.cycle};
+    if (!node.second.empty()) {
+      const bool hit = node.second.front().look_up(wanted.line, 0);
+      ++(hit ? node.second_counts.hits : node.second_counts.misses);
+      if (hit) {
+        const sim::Ticks hit_time = machine_.l2.clock.value_or(machine_.clock).cycles(machine_.l2.hit_cycles);
+        line->there = std::max(node.cycle + 1, cycle_at_or_after(engine_.now() + hit_time));
+        return line;
+      }
+    }
+    line->left = true;
+    if (replicated()) {
+      arrives(node, *free, processors::walk::LocalMemory(machine_.local).read(unit_, engine_.now()));
+    } else {
+      const auto port = static_cast<std::uint32_t>(free - node.registers.begin());
+      interconnects_[number / machine_.nodes]->read(
+          {number % machine_.nodes * machine_.simt.mshrs + port, wanted.line * unit_, unit_});
+    }
+    return line;
+  }
+
+  void arrives(Node& node, const Register& at, const memory::Service& service) const {
+    at.line->there = std::max(at.asked + 1, cycle_at_or_after(service.done));
+    node.parts.wait_interconnect += service.wait_interconnect;
+    node.parts.transfer += service.transfer;
+    node.parts.wait_bank += service.wait_bank;
+    node.parts.bank += service.bank;
+  }
+
+  // ---- writes, and where the cycle went
+
+  void end_cycle(std::uint32_t number) {
+    Node& node = nodes_[number];
+    for (; !node.to_post.empty(); node.to_post.pop_front()) {
+      const memory::Transaction& write = node.to_post.front();
+      ++node.statistics.writes;
+      interconnects_[number / machine_.nodes]->write(
+          {number % machine_.nodes * machine_.simt.mshrs, write.address, write.bytes});
+    }
+    if (node.finished) {
+      return;
+    }
+    spend_cycle(node);
+    for (const Warp& warp : node.warps) {
+      if (warp.has_packet()) {
+        count_lanes(node, warp);
+      }
+    }
+    for (const Register& one : node.registers) {
+      node.counts.line_cycles += one.line ? 1 : 0;
+    }
+    for (const std::optional<std::size_t>& slot : node.unit) {
+      node.counts.unit_cycles += slot ? 1 : 0;
+    }
+    ++node.cycle;
+    post(EventClass::step, node.cycle * period_, number);
+  }
+
+  void spend_cycle(Node& node) const {
+    const std::optional<Activity> activity = activity_of_cycle(node);
+    if (activity) {
+      spend(node, *activity, period_);
+    } else {
+      ++node.memory_cycles;
+    }
+  }
+  // Null: memory.
+  static std::optional<Activity> activity_of_cycle(Node& node) {
+    const Phase* computes = nullptr;
+    for (const Warp& warp : node.warps) {
+      if (warp.does == Warp::Does::phase && warp.phase.computes() &&
+          (computes == nullptr || *warp.phase.slot < *computes->slot)) {
+        computes = &warp.phase;
+      }
+    }
+    if (computes != nullptr) {
+      const Cycle into = node.cycle - *computes->slot;
+      return into < computes->cycles.traversal                                   ? Activity::traversal
+             : into < computes->cycles.traversal + computes->cycles.intersection ? Activity::intersection
+                                                                                 : Activity::shading;
+    }
+    if (node.looked_up) {
+      return *node.looked_up == memory::RecordKind::node || *node.looked_up == memory::RecordKind::list
+                 ? Activity::traversal
+             : *node.looked_up == memory::RecordKind::primitive ? Activity::intersection
+                                                                : Activity::shading;
+    }
+    bool second = false;
+    for (const Register& one : node.registers) {
+      if (one.line && one.line->left) {
+        return std::nullopt;
+      }
+      second = second || one.line;
+    }
+    if (second || !node.coming.empty()) {
+      return Activity::cache_access;
+    }
+    Cycle box = never;
+    Cycle primitive = never;
+    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+      if (lane.in == Lane::In::tests) {
+        Cycle& first = of_box(lane) ? box : primitive;
+        first = std::min(first, lane.ends);
+      }
+    });
+    if (box != never || primitive != never) {
+      return box <= primitive ? Activity::traversal : Activity::intersection;
+    }
+    const auto any = [&](Warp::Does does) {
+      return std::any_of(node.warps.begin(), node.warps.end(),
+                         [does](const Warp& warp) { return warp.does == does; });
+    };
+    return any(Warp::Does::write)             ? Activity::queue_full_wait
+           : any(Warp::Does::wait_for_packet) ? Activity::dispatch_wait
+                                              : Activity::idle;
+  }
+
+  static void count_lanes(Node& node, const Warp& warp) {
+    processors::walk::SimtCounts& counts = node.counts;
+    const auto waits_for = [&](const Reading& reading) -> std::int64_t& {
+      return !reading.left.empty()        ? counts.lanes_scheduler
+             : reading.waits_for_memory() ? counts.lanes_memory
+                                          : counts.lanes_cache;
+    };
+    for (const Lane& lane : warp.lanes) {
+      if (!lane.pixel) {
+        ++counts.lanes_empty;
+      } else if (warp.does == Warp::Does::phase && std::find(warp.phase.lanes.begin(), warp.phase.lanes.end(),
+                                                             lane.number) != warp.phase.lanes.end()) {
+        ++(warp.phase.computes()     ? counts.lanes_shading
+           : warp.phase.wants_slot() ? counts.lanes_slot
+                                     : waits_for(warp.phase.reading));
+      } else if (warp.does == Warp::Does::wait_for_unit && lane.picked) {
+        ++counts.lanes_unit;
+      } else if (warp.does == Warp::Does::unit && lane.in == Lane::In::wants) {
+        ++counts.lanes_scheduler;
+      } else if (warp.does == Warp::Does::unit && lane.in == Lane::In::reads) {
+        ++waits_for(*lane.access);
+      } else if (warp.does == Warp::Does::unit &&
+                 (lane.in == Lane::In::waits || lane.in == Lane::In::tests)) {
+        ++(of_box(lane) ? counts.lanes_box : counts.lanes_primitive);
+      } else {
+        ++counts.lanes_held;
+      }
+    }
+  }
+
+  // The largest remainders, the first of equal ones, get what is left.
+  void divide_memory(Node& node) const {
+    using Wide = __int128;
+    const Wide all = Wide{node.memory_cycles} * period_;
+    const std::array<sim::Ticks, 4> parts = {node.parts.wait_interconnect, node.parts.transfer,
+                                             node.parts.wait_bank, node.parts.bank};
+    const std::array<Activity, 4> activities = {Activity::interconnect_wait, Activity::transfer,
+                                                Activity::bank_wait, Activity::bank_access};
+    Wide sum = 0;
+    for (const sim::Ticks part : parts) {
+      sum += part;
+    }
+    if (sum == 0) {
+      spend(node, Activity::transfer, static_cast<sim::Ticks>(all));
+      return;
+    }
+    Wide left = all;
+    std::vector<std::pair<Wide, std::size_t>> remainders;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Wide share = all * parts[i] / sum;
+      spend(node, activities[i], static_cast<sim::Ticks>(share));
+      left -= share;
+      remainders.emplace_back(-(all * parts[i] % sum), i);
+    }
+    std::sort(remainders.begin(), remainders.end());
+    for (std::size_t i = 0; left > 0; ++i, --left) {
+      spend(node, activities[remainders[i].second], 1);
+    }
+  }
+
+  const WorkLog& log_;
+  MachineConfig machine_;
+  memory::Layout layout_;
+  NaiveSimtLog program_;
+  StepTicks ticks_;
+  sim::Ticks period_;
+  std::uint32_t unit_;
+  PacketList packets_;
+  processors::node::Host host_;
+  sim::Engine engine_;
+  std::vector<Node> nodes_;
+  std::vector<Client> clients_;
+  std::vector<std::unique_ptr<memory::Interconnect>> interconnects_;
+  sim::Ticks end_ = 0;
+};
+
+}  // namespace
+
+MachineResult naive_simt(const WorkLog& log, const MachineConfig& config) {
+  return NaiveSimt(log, config).run();
+}
+
+}  // namespace marti::test

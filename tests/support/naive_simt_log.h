@@ -1,0 +1,169 @@
+// What the lanes of a SIMT node read and compute for the steps of a log, one after the other.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "memory/layout.h"
+#include "processors/cost/step_time.h"
+#include "processors/walk/record_places.h"
+#include "tests/support/naive_program.h"
+
+namespace marti::test {
+
+/// What a lane does with a record in the unit.
+enum class NaiveTest { none, box, leaf, triangle, quadric };
+
+struct NaiveRecord {
+  memory::RecordKind kind = memory::RecordKind::node;
+  memory::Address address = 0;
+  std::uint32_t bytes = 0;
+  NaiveTest test = NaiveTest::none;
+};
+
+/// A record of a ray's visit and, for warps that trace themselves, the steps that are taken with it. Steps
+/// behind the last record come without one.
+struct NaiveVisit {
+  std::optional<NaiveRecord> record;
+  StepCounts steps;
+};
+
+/// The cycles of a phase, and of one that several lanes take together.
+struct NaiveCycles {
+  std::int64_t traversal = 0;
+  std::int64_t intersection = 0;
+  std::int64_t shading = 0;
+  [[nodiscard]] std::int64_t all() const { return traversal + intersection + shading; }
+};
+
+/// Of each kind of step the most that any lane takes.
+class NaiveMost {
+ public:
+  void lane(const StepCounts& steps) {
+    std::size_t kind = 0;
+    for_each_step(StepTicks{}, steps, [&](Activity, sim::Ticks, std::int64_t count) {
+      most_.resize(std::max(most_.size(), kind + 1));
+      most_[kind] = std::max(most_[kind], count);
+      ++kind;
+    });
+  }
+  [[nodiscard]] NaiveCycles cycles(const StepTicks& ticks, sim::Ticks period) const {
+    NaiveCycles sum;
+    std::size_t kind = 0;
+    for_each_step(ticks, StepCounts{}, [&](Activity activity, sim::Ticks each, std::int64_t) {
+      const std::int64_t cycles = kind < most_.size() ? each / period * most_[kind] : 0;
+      (activity == Activity::traversal      ? sum.traversal
+       : activity == Activity::intersection ? sum.intersection
+                                            : sum.shading) += cycles;
+      ++kind;
+    });
+    return sum;
+  }
+
+ private:
+  std::vector<std::int64_t> most_;
+};
+
+class NaiveSimtLog {
+ public:
+  NaiveSimtLog(const WorkLog& log, const MachineConfig& machine, const memory::Layout& layout)
+      : log_(log), machine_(machine), layout_(layout), rank_(processors::walk::node_ranks(log, machine)) {}
+
+  static bool is_visit(Step step) {
+    return step == Step::branch || step == Step::leaf || step == Step::partial_leaf || step == Step::cut ||
+           step == Step::pass;
+  }
+
+  /// Counts a step. Where leaves list no primitives, no list is read.
+  void count(const std::uint32_t* word, StepCounts& steps) const {
+    count_step(log_, word, steps);
+    if (inlined()) {
+      steps.lists = 0;
+    }
+  }
+
+  [[nodiscard]] NaiveRecord material(std::uint32_t number) const {
+    return record(memory::RecordKind::material, number, NaiveTest::leaf);
+  }
+  [[nodiscard]] NaiveRecord texel(std::uint32_t texture, std::uint32_t number) const {
+    return record(memory::RecordKind::texel, log_.texture_begin[texture] + number, NaiveTest::none);
+  }
+  /// The records of the visits that begin at `at`, which moves behind them. Counts their steps.
+  std::vector<NaiveVisit> visits(std::span<const std::uint32_t> words, std::size_t& at,
+                                 StepCounts& counted) const {
+    std::vector<NaiveVisit> visits;
+    StepCounts waiting;  // steps for the next record
+    bool any = false;    // of them
+    const auto take = [&](const NaiveRecord& of) {
+      visits.push_back({of, std::exchange(waiting, StepCounts{})});
+      any = false;
+    };
+    for (; at < words.size() && is_visit(step_of(words[at])); at += step_words(&words[at])) {
+      const std::uint32_t operand = operand_of(words[at]);
+      count(&words[at], counted);
+      any = true;
+      switch (step_of(words[at])) {
+        case Step::branch:
+          ++waiting.branches;
+          take(node(operand, NaiveTest::box));
+          break;
+        case Step::cut:
+          ++waiting.cuts;
+          if (has_record(operand)) {
+            take(node(operand, NaiveTest::box));
+          }
+          break;
+        case Step::pass:
+          ++waiting.passes;
+          take(material(operand));
+          break;
+        default:
+          ++waiting.leaves;
+          leaf(operand, step_of(words[at]) == Step::leaf ? log_.topology.nodes[operand].count : words[at + 1],
+               take, waiting);
+      }
+    }
+    if (any) {
+      visits.push_back({std::nullopt, waiting});
+    }
+    return visits;
+  }
+
+ private:
+  [[nodiscard]] bool inlined() const { return machine_.layout.leaf == memory::LeafLayout::inline_records; }
+  [[nodiscard]] bool has_record(std::uint32_t number) const { return NaiveProgram::has_record(log_, number); }
+  [[nodiscard]] NaiveRecord record(memory::RecordKind kind, std::uint64_t index, NaiveTest test) const {
+    return {kind, layout_.address(kind, index), layout_.record_bytes(kind, index), test};
+  }
+  [[nodiscard]] NaiveRecord node(std::uint32_t number, NaiveTest test) const {
+    return record(memory::RecordKind::node, rank_.empty() ? number : rank_[number], test);
+  }
+  template <class Take>
+  void leaf(std::uint32_t number, std::uint32_t tests, const Take& take, StepCounts& waiting) const {
+    if (has_record(number)) {
+      take(node(number, NaiveTest::leaf));
+    }
+    const std::uint32_t first = log_.topology.nodes[number].first;
+    if (tests > 0 && !inlined()) {
+      take({memory::RecordKind::list, layout_.address(memory::RecordKind::list, first),
+            tests * machine_.layout.entry_bytes, NaiveTest::none});
+    }
+    for (std::uint32_t entry = first; entry < first + tests; ++entry) {
+      const std::uint32_t primitive = log_.topology.entries[entry];
+      const accel::PrimitiveKind kind = log_.kind_of(primitive);
+      (void)count_test(StepTicks{}, kind, waiting);
+      take(record(memory::RecordKind::primitive, inlined() ? entry : primitive,
+                  kind == accel::PrimitiveKind::triangle ? NaiveTest::triangle : NaiveTest::quadric));
+    }
+  }
+
+  const WorkLog& log_;
+  MachineConfig machine_;
+  memory::Layout layout_;
+  std::vector<std::uint32_t> rank_;
+};
+
+}  // namespace marti::test

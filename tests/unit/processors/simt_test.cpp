@@ -1,0 +1,403 @@
+// SIMT nodes: against a plain second implementation, against closed forms and against scalar nodes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processors/replay/replay.h"
+#include "simt_logs.h"
+#include "tests/support/first_difference.h"
+#include "tests/support/long_tests.h"
+#include "tests/support/naive_simt.h"
+#include "tests/support/random_simt.h"
+#include "tests/support/user_error.h"
+
+namespace marti::processors {
+
+using namespace cost;
+using namespace machine;
+using namespace program;
+using namespace replay;
+using walk::SimtCounts;
+
+namespace {
+
+std::int64_t lane_cycles(const SimtCounts& counts) {
+  std::int64_t sum = 0;
+  for (std::size_t state = 0; state < walk::lane_states; ++state) {
+    sum += counts.*SimtCounts::counters()[state].member;
+  }
+  return sum;
+}
+
+std::int64_t all_rays(const StepCounts& steps) {
+  std::int64_t rays = 0;
+  for (const auto counter : ray_counters) {
+    rays += steps.*counter;
+  }
+  return rays;
+}
+
+// What holds for every machine, whoever times it.
+void expect_laws(const WorkLog& log, const MachineConfig& machine, const MachineResult& result) {
+  const StepCounts steps = result.steps();
+  const LogTotals totals = totals_of(log);
+  const auto pixels = static_cast<std::int64_t>(log.width) * log.height;
+  ASSERT_EQ(static_cast<std::uint64_t>(all_rays(steps)), totals.all_rays());
+  ASSERT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
+  ASSERT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
+  ASSERT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
+  ASSERT_EQ(static_cast<std::uint64_t>(steps.shades), totals.shades);
+  ASSERT_EQ(static_cast<std::uint64_t>(steps.texels), totals.texels);
+  ASSERT_EQ(steps.pixels, machine.pixels == Pixels::written ? pixels : 0);
+  std::int64_t packets = 0;
+  std::int64_t writes = 0;
+  for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+    const NodeStatistics& node = result.nodes[n];
+    const SimtCounts& counts = result.simt.nodes.at(n);
+    ASSERT_EQ(sum_of(node.time), result.end) << "node " << n;
+    ASSERT_EQ(node.finish % machine.clock.period(), 0);
+    packets += node.packets;
+    writes += node.writes;
+    const std::int64_t cycles = node.finish / machine.clock.period();
+    ASSERT_EQ(lane_cycles(counts) % machine.simt.lanes, 0);
+    ASSERT_LE(lane_cycles(counts), cycles * machine.simt.lanes * machine.simt.warps);
+    ASSERT_LE(counts.unit_cycles, cycles * machine.rt.warps);
+    ASSERT_LE(counts.line_cycles, cycles * machine.simt.mshrs);
+    ASSERT_LE(counts.full_cycles, cycles);
+    ASSERT_LE(counts.longest_ray, counts.longest_warp);
+    ASSERT_LE(counts.accesses, counts.records);
+    ASSERT_LE(counts.rays, all_rays(node.steps));
+    ASSERT_LE(counts.joined, node.references.all_hits());
+    if (machine.rt.warps == 0) {
+      ASSERT_EQ(counts.traces + counts.unit_cycles + counts.lanes_unit + counts.lanes_box, 0);
+    }
+  }
+  ASSERT_EQ(static_cast<std::uint64_t>(packets), result.packets);
+  ASSERT_LE(writes, machine.pixels == Pixels::written ? pixels : 0);
+  std::int64_t reads = 0;
+  std::int64_t written = 0;
+  for (const ClusterResult& cluster : result.clusters) {
+    reads += cluster.interconnect.reads;
+    written += cluster.interconnect.writes;
+  }
+  ASSERT_EQ(written, writes);
+  std::int64_t asked = result.references().all_misses();
+  if (machine.l2.sharing == SecondLevel::private_caches) {
+    ASSERT_EQ(result.l2.counters().references(), asked);
+    asked = result.l2.counters().misses;
+  }
+  ASSERT_EQ(reads, machine.placement == Placement::replicated ? 0 : asked);
+}
+
+TEST(Simt, EqualsTheNaiveOneOnRandomMachines) {
+  const std::vector<std::vector<WorkLog>> logs = {test::simt_logs(7, 5), test::simt_logs(16, 12)};
+  const std::size_t machines = marti::test::cases(marti::test::stride(200, 4000));
+  SimtCounts all;
+  for (std::uint64_t seed = 1; seed <= machines; ++seed) {
+    marti::test::Random random(seed);
+    const auto& sizes = logs[random() % 12 == 0 ? 1 : 0];
+    const std::size_t which = random() % sizes.size();
+    const MachineConfig machine = marti::test::random_simt(random, sizes[which]);
+    const MachineResult plain = marti::test::naive_simt(sizes[which], machine);
+    const std::string about = "seed " + std::to_string(seed) + ", log " + std::to_string(which) + ": " +
+                              marti::test::describe_simt(machine);
+    SCOPED_TRACE(about);
+    expect_laws(sizes[which], machine, plain);
+    ASSERT_FALSE(::testing::Test::HasFatalFailure());
+    ASSERT_EQ(marti::test::FirstDifference::between(replay::replay(sizes[which], machine), plain), "");
+    sim::merge(all, plain.simt.counts());
+  }
+  sim::for_each_counter(all, [](const sim::Counter<SimtCounts>& counter, std::int64_t value) {
+    EXPECT_GT(value, 100) << counter.name;  // these machines meet all that is counted
+  });
+}
+
+// Its warps write pixels while the node's only line is under way.
+TEST(Simt, OnePortWritesWhileItReads) {
+  const std::vector<WorkLog> logs = test::simt_logs(7, 5);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    marti::test::Random random(seed);
+    const WorkLog& log = logs[random() % logs.size()];
+    MachineConfig machine = marti::test::random_simt(random, log);
+    machine.clusters = machine.nodes = machine.simt.mshrs = 1;
+    machine.simt.warps = 6;
+    machine.pixels = Pixels::written;
+    machine.placement = Placement::shared;
+    machine.interconnect.kind = memory::InterconnectKind::bus;
+    machine.interconnect.mode = memory::BusMode::split;
+    machine.interconnect.arbitration = memory::Arbitration::fifo;
+    if (machine.banks.dram) {
+      machine.banks.dram->policy = memory::DramPolicy::frfcfs;
+    }
+    ASSERT_EQ(marti::test::FirstDifference::between(replay::replay(log, machine),
+                                                    marti::test::naive_simt(log, machine)),
+              "")
+        << "seed " << seed << ": " << marti::test::describe_simt(machine);
+  }
+}
+
+// ---- closed forms
+
+// A tree of branches only, so many that each of `records` visits has one of its own.
+accel::Topology branches(std::uint32_t records) {
+  accel::Topology topology;
+  topology.nodes.push_back({1, records, 1, false});
+  topology.nodes.insert(topology.nodes.end(), records, accel::TopologyNode{0, 1, 2, false});
+  return topology;
+}
+
+// One row of pixels, each with one ray that visits `records` branches: those of pixel x from first(x) on.
+WorkLog row_of(std::uint32_t pixels, std::uint32_t records,
+               const std::function<std::uint32_t(std::uint32_t)>& first) {
+  WorkLog log;
+  log.traversal = accel::Traversal::octree;
+  log.width = pixels;
+  log.height = 1;
+  log.texture_begin = {0};
+  log.rows.resize(1);
+  std::uint32_t last = 0;
+  for (std::uint32_t x = 0; x < pixels; ++x) {
+    log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+    log.rows[0].words.push_back(camera_ray);
+    for (std::uint32_t i = 0; i < records; ++i) {
+      log.rows[0].words.push_back(make_word(Step::branch, first(x) + i));
+      last = std::max(last, first(x) + i);
+    }
+  }
+  log.rows[0].begin.push_back(static_cast<std::uint32_t>(log.rows[0].words.size()));
+  log.topology = branches(last + 1);
+  return log;
+}
+
+// One warp whose lanes compute nothing, records of one line each, a cache that holds them all, and a memory
+// that is as near as the cache.
+MachineConfig one_warp(std::uint32_t lanes, std::int64_t hit, std::int64_t test) {
+  MachineConfig machine;
+  machine.nodes = 1;
+  machine.kind = NodeKind::simt;
+  machine.simt.lanes = lanes;
+  machine.simt.warps = 1;
+  machine.simt.mshrs = most_mshrs;
+  machine.rt.box_cycles = test;
+  machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
+  machine.pixels = Pixels::collected;
+  machine.clock = sim::Clock::from_period(10);
+  machine.layout.node_bytes = machine.cache.cache.line;
+  machine.cache.cache.size = 1U << 20U;
+  machine.cache.hit_cycles = hit;
+  machine.interconnect.kind = memory::InterconnectKind::ideal;
+  machine.interconnect.clock = machine.clock;
+  machine.interconnect.latency_cycles = hit;
+  machine.packets = {64, 1, PacketOrder::scanline};
+  machine.host.assignment = Assignment::interleaved;
+  return machine;
+}
+
+TEST(Simt, LanesThatReadTheSameTakeTheTimeOfOne) {
+  for (const std::uint32_t lanes : {1U, 7U, 64U}) {
+    for (const std::int64_t hit : {1, 3}) {
+      for (const std::int64_t test : {0, 1, 8}) {
+        const std::int64_t records = 9;
+        const WorkLog log = row_of(lanes, records, [](std::uint32_t) { return 0; });
+        const MachineResult result = replay::replay(log, one_warp(lanes, hit, test));
+        const SimtCounts& counts = result.simt.nodes.at(0);
+        EXPECT_EQ(counts.unit_cycles, records * (hit + test));
+        EXPECT_EQ(counts.accesses, records);
+        EXPECT_EQ(counts.records, records * lanes);
+        // It waits one cycle for the unit, and nothing else takes time.
+        EXPECT_EQ(counts.longest_ray, records * (hit + test) + 1);
+        EXPECT_EQ(result.end, (records * (hit + test) + 1) * 10);
+      }
+    }
+  }
+}
+
+TEST(Simt, LanesThatShareNothingTakeTurnsAtTheCache) {
+  for (const std::int64_t lanes : {1, 2, 5, 33, 64}) {
+    for (const std::int64_t hit : {1, 4}) {
+      for (const std::int64_t test : {0, 3, 20}) {
+        const std::int64_t records = 6;
+        const WorkLog log = row_of(static_cast<std::uint32_t>(lanes), records,
+                                   [](std::uint32_t x) { return x * static_cast<std::uint32_t>(records); });
+        const MachineResult result =
+            replay::replay(log, one_warp(static_cast<std::uint32_t>(lanes), hit, test));
+        const SimtCounts& counts = result.simt.nodes.at(0);
+        EXPECT_EQ(counts.accesses, records * lanes);
+        EXPECT_GE(counts.unit_cycles, std::max(lanes * records, records * (hit + test)));
+        EXPECT_LE(counts.unit_cycles, lanes * records + records * (hit + test));
+      }
+    }
+  }
+}
+
+// Rays that visit branches and leaves of one entry, with a surface point now and then.
+WorkLog walks(marti::test::Random& random) {
+  using marti::test::pick;
+  WorkLog log;
+  log.traversal = accel::Traversal::octree;
+  log.width = 13;
+  log.height = 9;
+  log.primitives = 40;
+  log.materials = 7;
+  log.texture_begin = {0};
+  log.topology = marti::test::random_topology(random, 20, log.primitives, 1);
+  log.rows.resize(log.height);
+  const auto word = [&random](Step step, std::int64_t below) {
+    return make_word(step, static_cast<std::uint32_t>(pick(random, 0, below - 1)));
+  };
+  for (LogRow& row : log.rows) {
+    for (std::uint32_t x = 0; x < log.width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      for (std::int64_t rays = pick(random, 1, 3); rays > 0; --rays) {
+        row.words.push_back(make_word(Step::ray, ray_operand(static_cast<RayKind>(pick(random, 0, 4)), 0)));
+        for (std::int64_t visits = pick(random, 0, 12); visits > 0; --visits) {
+          const auto node = static_cast<std::uint32_t>(
+              pick(random, 0, static_cast<std::int64_t>(log.topology.nodes.size()) - 1));
+          row.words.push_back(make_word(log.topology.nodes[node].leaf ? Step::leaf : Step::branch, node));
+        }
+        if (random() % 2 == 0) {
+          row.words.push_back(word(Step::shade, log.materials));
+        }
+      }
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return log;
+}
+
+// One lane that computes nothing and has one line under way is a scalar node: it waits for each line. All
+// times are whole cycles, records lie within lines, and the host takes the pixels. Nodes do not compete: of
+// several that ask at one instant, a core that has ended a pixel comes last.
+TEST(Simt, OneLaneIsAScalarNode) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    marti::test::Random random(seed);
+    const WorkLog log = walks(random);
+    MachineConfig machine = marti::test::random_machine(random, 6);
+    const std::uint32_t line = 32;
+    machine.operations = {0, 0, 0, 0, 0, 0, 0, 0};
+    machine.pixels = Pixels::collected;
+    if (machine.interconnect.kind != memory::InterconnectKind::ideal) {
+      machine.nodes = 1;
+    }
+    machine.layout = {};
+    machine.layout.node_bytes = machine.layout.entry_bytes = machine.layout.primitive_bytes =
+        machine.layout.quadric_bytes = machine.layout.material_bytes = line;
+    machine.cache.cache.line = line;
+    machine.cache.cache.size = std::max(1U, machine.cache.cache.ways) * line * (1U << random() % 4);
+    machine.cache.split_sizes.fill(machine.cache.cache.size);
+    machine.cache.hit_cycles = marti::test::pick(random, 1, 4);
+    if (machine.cache.organisation == CacheOrganisation::none) {
+      machine.cache.organisation = CacheOrganisation::split;
+    }
+    if (machine.placement == Placement::distributed) {
+      machine.placement = Placement::shared;
+    }
+    machine.clock = machine.host.clock = machine.interconnect.clock = machine.banks.clock =
+        machine.local.clock = sim::Clock::from_period(7);
+    machine.interconnect.cycles_per_beat = marti::test::pick(random, 1, 2);
+    marti::test::add_random_second_level(random, machine);
+    machine.l2.hit_cycles = marti::test::pick(random, 1, 3);
+    machine.l2.clock.reset();
+    // A memory that takes no time at all is there in the next cycle for one, and at once for the other.
+    machine.interconnect.latency_cycles = machine.local.access_cycles = marti::test::pick(random, 1, 12);
+    const MachineResult scalar = replay::replay(log, machine);
+    machine.kind = NodeKind::simt;
+    machine.simt.lanes = machine.simt.warps = machine.simt.mshrs = 1;
+    machine.rt.warps = 0;
+    const MachineResult one = replay::replay(log, machine);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + marti::test::describe_simt(machine));
+    ASSERT_EQ(one.end, scalar.end);
+    for (std::size_t n = 0; n < one.nodes.size(); ++n) {
+      ASSERT_EQ(one.nodes[n].finish, scalar.nodes[n].finish);
+    }
+    // The division of time counts a look-up as work of its step.
+    MachineResult same = one;
+    for (std::size_t n = 0; n < one.nodes.size(); ++n) {
+      same.nodes[n].time = scalar.nodes[n].time;
+    }
+    same.simt = scalar.simt;
+    ASSERT_EQ(marti::test::FirstDifference::between(same, scalar), "");
+  }
+}
+
+// A warp that never waits for a packet is on a node's every cycle.
+TEST(Simt, LaneCyclesAddUp) {
+  const std::vector<WorkLog> logs = test::simt_logs(7, 5);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    marti::test::Random random(seed);
+    const WorkLog& log = logs[random() % logs.size()];
+    MachineConfig machine = marti::test::random_simt(random, log);
+    machine.simt.warps = 1;
+    machine.host.assignment = Assignment::blocks;
+    machine.pixels = Pixels::collected;
+    const MachineResult result = replay::replay(log, machine);
+    for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+      ASSERT_EQ(lane_cycles(result.simt.nodes.at(n)) * machine.clock.period(),
+                result.nodes[n].finish * machine.simt.lanes)
+          << marti::test::describe_simt(machine);
+    }
+  }
+}
+
+TEST(Simt, RefusesWhatCannotBe) {
+  struct Case {
+    std::string key;
+    std::function<void(MachineConfig&)> spoil;
+  };
+  const std::vector<Case> cases = {
+      {"simt.lanes", [](MachineConfig& m) { m.simt.lanes = 0; }},
+      {"simt.lanes", [](MachineConfig& m) { m.simt.lanes = most_lanes + 1; }},
+      {"simt.warps", [](MachineConfig& m) { m.simt.warps = 0; }},
+      {"simt.warps", [](MachineConfig& m) { m.simt.warps = most_warps + 1; }},
+      {"simt.issue", [](MachineConfig& m) { m.simt.issue = 0; }},
+      {"cache.ports", [](MachineConfig& m) { m.simt.ports = 0; }},
+      {"cache.ports", [](MachineConfig& m) { m.simt.ports = most_cache_ports + 1; }},
+      {"cache.mshrs", [](MachineConfig& m) { m.simt.mshrs = 0; }},
+      {"cache.mshrs", [](MachineConfig& m) { m.simt.mshrs = most_mshrs + 1; }},
+      {"cache.mshrs",
+       [](MachineConfig& m) {
+         m.nodes = most_nodes;
+         m.simt.mshrs = most_mshrs;
+       }},
+      {"rt.warps", [](MachineConfig& m) { m.rt.warps = most_warps + 1; }},
+      {"rt.box_units", [](MachineConfig& m) { m.rt.box_units = most_test_units + 1; }},
+      {"rt.triangle_units", [](MachineConfig& m) { m.rt.triangle_units = most_test_units + 1; }},
+      {"cache.sector", [](MachineConfig& m) { m.simt.sector = 24; }},
+      {"cache.sector", [](MachineConfig& m) { m.simt.sector = 2 * m.cache.cache.line; }},
+      {"cache.sector",
+       [](MachineConfig& m) {
+         m.cache.cache.line = 128;
+         m.simt.sector = 1;
+       }},
+      {"node.kind", [](MachineConfig& m) { m.cache.organisation = CacheOrganisation::none; }},
+      {"node.contexts", [](MachineConfig& m) { m.contexts = 2; }},
+      {"prefetch",
+       [](MachineConfig& m) {
+         m.prefetch.next_line = true;
+         m.prefetch.outstanding = 1;
+       }},
+      {"build.sharing", [](MachineConfig& m) { m.build.sharing = Sharing::private_trees; }},
+      {"database.placement", [](MachineConfig& m) { m.placement = Placement::distributed; }},
+      {"machine.scheme", [](MachineConfig& m) { m.scheme = Scheme::pipeline; }},
+  };
+  const WorkLog log = row_of(3, 2, [](std::uint32_t) { return 0; });
+  for (const Case& each : cases) {
+    MachineConfig machine = one_warp(4, 1, 1);
+    EXPECT_NO_THROW((void)replay::replay(log, machine));
+    each.spoil(machine);
+    const std::string said = marti::test::user_error_of([&] { (void)replay::replay(log, machine); });
+    EXPECT_TRUE(marti::test::says(said, each.key)) << each.key << " is refused with: " << said;
+  }
+  WorkLog mailed = log;
+  mailed.mailboxes = true;
+  const std::string said =
+      marti::test::user_error_of([&] { (void)replay::replay(mailed, one_warp(4, 1, 1)); });
+  EXPECT_TRUE(marti::test::says(said, "mailboxes")) << said;
+}
+
+}  // namespace
+}  // namespace marti::processors
