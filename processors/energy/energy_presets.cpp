@@ -133,7 +133,8 @@ std::optional<machine::CacheFigures> known_cache(machine::EnergyPreset preset,
     return std::nullopt;
   }
   const Rows all = preset == machine::EnergyPreset::nm45 ? cacti_rows_45nm() : cacti_rows_22nm();
-  const auto [begin, end] = std::ranges::equal_range(all, cache.line, {}, &CactiRow::line);
+  const auto begin = std::ranges::lower_bound(all, cache.line, {}, &CactiRow::line);
+  const auto end = std::ranges::upper_bound(all, cache.line, {}, &CactiRow::line);
   const auto figure = [&, rows = Rows(begin, end)](double CactiRow::*member) {
     return std::exp(by_ways(rows, member, cache));
   };
