@@ -63,9 +63,8 @@ constexpr std::array<Preset, 4> presets{{
       .integer = 1,
       .load = 1,
       .store = 1}},
-    // A small in-order core of today, the Cortex-A510 (Arm, 2021), whose pipelines are kept full, as a
-    // compiler
-    // does that has other rays' operations to put between dependent ones: each operation costs the cycles
+    // A small in-order core of today, the Cortex-A510 (Arm, 2021). Its pipelines are taken to be full, as
+    // where a compiler puts other rays' operations between dependent ones: each operation costs the cycles
     // until the next one of its kind can begin, not its latency. Single precision, as the 4-byte coordinates
     // of the database. From LLVM's model of it, after Arm's Cortex-A510 Software Optimization Guide
     // (github.com/llvm/llvm-project, commit 48f247b, llvm/lib/Target/AArch64/AArch64SchedA510.td): a division
@@ -73,8 +72,7 @@ constexpr std::array<Preset, 4> presets{{
     // double precision both take 19. Additions and comparisons have two pipelines (WriteF, WriteFCmp), so do
     // multiplications (WriteFMul) and loads (WriteLD), integer operations have three (WriteI) and stores one
     // (WriteST), each of which takes a new operation every cycle. All of these cost one cycle: operations of
-    // a
-    // step are issued one a cycle here, while the core can issue up to three side by side.
+    // a step are issued one a cycle here, while the core can issue up to three side by side.
     {"cortex-a510-2021",
      {.add = 1,
       .multiply = 1,

@@ -46,7 +46,7 @@ struct StepCycles {
   std::int64_t pixel = 0;  ///< converting and storing one finished pixel
 };
 
-/// Names of the presets, for the configuration reference: a processor and its year; `unit` is none.
+/// Names of the presets: a processor and its year, or `unit`, in which each operation takes a cycle.
 [[nodiscard]] std::span<const std::string_view> cost_presets();
 /// The default of the configuration.
 inline constexpr std::string_view default_cost_preset = "arm1176-2003";

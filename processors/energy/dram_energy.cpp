@@ -12,20 +12,18 @@ namespace {
 // burst VDD (IDD4 - IDD3N) times its time on the bus, of all devices; without drivers and termination.
 //
 // ddr4-2400: github.com/umd-memsys/DRAMsim3, configs/DDR4_8Gb_x8_2400.ini: 3.45 nJ, and 2.93 and 2.55 nJ for
-// 64 bytes. ddr5-4800: no published figure at hand; those of DDR4 times the square of 1.1 V / 1.2 V, and an
-// activation half of
-//   that, since its row has half the bytes.
+// 64 bytes.
+// ddr5-4800: no published figure at hand; those of DDR4 times the square of 1.1 V / 1.2 V, and an activation
+// half of that, since its row has half the bytes.
 // hbm2-2000: O'Connor et al., Fine-grained DRAM, MICRO 2017: 909 pJ to activate a row of 1 KiB; 2.24 pJ a bit
-// to move it
-//   over the die and 0.30 over the interface. As quoted in later papers.
+// to move it over the die and 0.30 over the interface. As quoted in later papers.
 // hbm3: no published figure at hand; those of HBM2 times the square of 1.1 V / 1.2 V.
 // gddr6: the currents of Arches (github.com/Haydelj/arches-v2, ramulator2 GDDR6): IDD0 71, IDD2N 60, IDD3N
-// 61,
-//   IDD4R 248, IDD4W 231 mA, at 1.35 V and, the same currents, at 1.25 V, with the preset's times: a burst of
-//   32 bytes has the bus for 1.14 ns.
+// 61, IDD4R 248, IDD4W 231 mA, at 1.35 V and at 1.25 V, with the preset's times: a burst of 32 bytes has the
+// bus for 1.14 ns.
 // lpddr5-6400: no published figure at hand; LPDDR4-2400 of DRAMsim3 (configs/LPDDR4_8Gb_x16_2400.ini: 1.74 nJ
-// to activate
-//   a row of 2 KiB, 6.1 pJ a bit read at 1.2 V) times the square of 1.05 V / 1.2 V; a write as a read.
+// to activate a row of 2 KiB, 6.1 pJ a bit read at 1.2 V) times the square of 1.05 V / 1.2 V; a write as a
+// read.
 constexpr std::string_view of_ddr4 =
     "currents of DRAMsim3's DDR4_8Gb_x8_2400, without drivers and termination";
 constexpr std::string_view as_ddr4 =

@@ -56,7 +56,7 @@ struct RtUnitConfig {
   std::int64_t triangle_cycles = 8;
   std::int64_t quadric_cycles = 16;
   std::uint32_t box_units = 0;       ///< tests of boxes and leaves that may begin in a cycle; 0: any number
-  std::uint32_t triangle_units = 0;  ///< the same of triangles and quadrics
+  std::uint32_t triangle_units = 0;  ///< tests of primitives that may; 0: any number
 };
 
 /// The part of check() for SIMT nodes; checks nothing for others.

@@ -250,9 +250,7 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
     if (shared_.counting) {
       shared_.counting->second_level_hit(line.kind, line.origin);
     }
-    const sim::Ticks period = config.clock.period();
-    queue_.push(cycle_ + std::max<std::int64_t>(1, *hit / period + (*hit % period != 0 ? 1 : 0)),
-                {Due::line, number});
+    queue_.push(cycle_ + std::max<std::int64_t>(1, shared_.cycle_at(*hit)), {Due::line, number});
   } else if (shared_.behind.reads_alone()) {
     sim::Ticks time = config.clock.cycles(cycle_);
     cost::TimeDivision unused{};
@@ -304,8 +302,7 @@ void SimtNode::line_there(std::uint32_t waiter, bool left) {
 }
 
 void SimtNode::arrives(std::uint32_t number, const memory::Service& service, std::int64_t known) {
-  const sim::Ticks period = shared_.input.config.clock.period();
-  const std::int64_t there = service.done / period + (service.done % period != 0 ? 1 : 0);
+  const std::int64_t there = shared_.cycle_at(service.done);
   queue_.push(std::max({there, registers_[number].asked + 1, known + 1}), {Due::line, number});
   if (shared_.counting) {
     shared_.counting->wait(registers_[number].kind, registers_[number].origin, service);

@@ -40,6 +40,12 @@ struct SimtShared {
   std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
   RoundCounts round_cycles{};
   unsigned unit_shift = 0;  ///< from addresses to lines
+
+  /// The first cycle that begins at or after `time`.
+  [[nodiscard]] std::int64_t cycle_at(sim::Ticks time) const {
+    const sim::Ticks period = input.config.clock.period();
+    return time / period + (time % period != 0 ? 1 : 0);
+  }
 };
 
 /// Tells a node what its write buffer can take.

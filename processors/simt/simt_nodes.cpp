@@ -147,18 +147,13 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
     plan(node);
   }
   void room_is_known(std::uint32_t node, sim::Ticks room) {
-    nodes_[node].wake(std::max(cycle_at(room), this_cycle() + 1));
+    nodes_[node].wake(std::max(shared_.cycle_at(room), this_cycle() + 1));
     plan(node);
   }
 
  private:
   static constexpr sim::Ticks never_wakes = INT64_MAX;
 
-  // The first cycle that begins at or after `time`.
-  [[nodiscard]] std::int64_t cycle_at(sim::Ticks time) const {
-    const sim::Ticks period = input_.config.clock.period();
-    return time / period + (time % period != 0 ? 1 : 0);
-  }
   [[nodiscard]] std::int64_t this_cycle() const { return engine_.now() / input_.config.clock.period(); }
 
   [[nodiscard]] bool has_room(std::uint32_t node, std::size_t queued) const override {
@@ -253,7 +248,7 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
     }
     const machine::Packet packet = input_.packets[grant->packet];
     if (grant->start > now) {
-      its.expect_packet(warp, packet, cycle_at(grant->start));
+      its.expect_packet(warp, packet, shared_.cycle_at(grant->start));
       return;
     }
     its.begin_packet(warp, packet);
@@ -291,7 +286,7 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
       if (room == Base::not_known) {
         Base::expect_room(node);
       } else {
-        nodes_[node].wake(cycle_at(room));
+        nodes_[node].wake(shared_.cycle_at(room));
       }
     }
     plan(node);

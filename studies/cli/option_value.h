@@ -1,4 +1,4 @@
-// Options whose values are those of keys, so that what is wrong about one is said as it is of a key.
+// Command-line options whose values are read like those of keys: a wrong one gets the message of a key.
 #pragma once
 
 #include <CLI/CLI.hpp>

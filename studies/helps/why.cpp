@@ -168,13 +168,10 @@ double nodes_share(const std::string& name, const figures::FlowFigures& flow) {
   return std::max(flow.slowest().busiest, flow.all.busiest);
 }
 
-bool is_for_waits(std::string_view name) {
-  return name.starts_with("simt.warps") || name.starts_with("rt.warps") || name.starts_with("cache.mshrs");
-}
-
 // How much of a SIMT node's waits more of this can fill, from 0 to 1: warps in the unit where others queue
-// for it, warps of the node where none do, registers where look-ups find none.
-double fills_waits(std::string_view name, const figures::Counts& counts) {
+// for it, warps of the node where none do, registers where look-ups find none. std::nullopt: it is none of
+// these.
+std::optional<double> filled_waits(std::string_view name, const figures::Counts& counts) {
   const auto lanes = [&](std::string_view state) {
     return static_cast<double>(figures::count_of(counts, "simt_lanes_" + std::string(state)).value_or(0));
   };
@@ -190,7 +187,7 @@ double fills_waits(std::string_view name, const figures::Counts& counts) {
   if (name.starts_with("simt.warps")) {
     return 1.0 - queue;
   }
-  return figure(counts, "simt_full_share");
+  return name.starts_with("cache.mshrs") ? std::optional(figure(counts, "simt_full_share")) : std::nullopt;
 }
 
 }  // namespace
@@ -220,9 +217,10 @@ double expected_saving(const Help& help, double factor, const MachineConfig& mac
   const double idle = share(counts, {Activity::idle});
   // Looking up in the node's own caches is a wait that other warps can fill.
   const double waiting = 1.0 - idle - computing(counts) + share(counts, {Activity::cache_access});
+  const std::optional<double> filled = filled_waits(help.name, counts);
   const double takes = help.name == "machine.nodes"             ? 1.0 - idle
                        : help.name.starts_with("node.contexts") ? 1.0 - idle - computing(counts)
-                       : is_for_waits(help.name)                ? waiting * fills_waits(help.name, counts)
+                       : filled                                 ? waiting * *filled
                                                                 : computing(counts);
   return std::min(takes * gone, room);
 }

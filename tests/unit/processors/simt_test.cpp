@@ -41,7 +41,7 @@ std::int64_t all_rays(const StepCounts& steps) {
   return rays;
 }
 
-// What holds for every machine, whoever times it.
+// Laws that hold for the result of either implementation.
 void expect_laws(const WorkLog& log, const MachineConfig& machine, const MachineResult& result) {
   const StepCounts steps = result.steps();
   const LogTotals totals = totals_of(log);

@@ -154,8 +154,8 @@ Pair time_both(const processors::program::WorkLog& log, const MachineConfig& mac
   return pair;
 }
 
-// A machine of any kind, with a log of which it takes the same steps whoever does them. Every third waits for
-// memory only, so that what all caches hold together shows.
+// A machine of any kind and a log. The steps that it takes do not depend on the number of nodes. Every third
+// machine waits for memory only, so that what all caches hold together shows.
 test::TimedCase any_machine(test::Random& random, std::uint64_t number) {
   constexpr std::array makers = {test::image_case, test::contexts_case, test::pipeline_case,
                                  test::space_case};
