@@ -121,6 +121,7 @@ void ArbitratedBus::grant_data(std::uint32_t port) {
   service.transfer += data;
   service.done = add_ticks(now, data);
   take(ports_[port].ready, data);
+  statistics_.data += data;
   site_.client.read_done(port, service);
 }
 
@@ -148,11 +149,15 @@ void ArbitratedBus::grant_read(const Request& request) {
   service.transfer = add_ticks(address_, data);
   service.done = add_ticks(access.ready, data);
   take(request.asked, service.done - now);
+  statistics_.data += data;
+  statistics_.held += access.ready - sent;
   site_.client.read_done(port, service);
 }
 
 void ArbitratedBus::grant_write(const Request& request) {
-  const Ticks length = add_ticks(address_, beats_(request.transaction.bytes));
+  const Ticks data = beats_(request.transaction.bytes);
+  const Ticks length = add_ticks(address_, data);
+  statistics_.data += data;
   take(request.asked, length);
   if (late()) {
     ask_late(request.transaction, true, free_at_);

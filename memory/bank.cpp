@@ -34,8 +34,8 @@ Banks::~Banks() = default;
 
 std::uint32_t Banks::channel_of(Address address) const { return channels_->channel(address); }
 
-std::vector<DramStatistics> Banks::dram_statistics() const {
-  return dram_ ? dram_->statistics() : std::vector<DramStatistics>();
+std::vector<DramStatistics> Banks::dram_statistics(sim::Ticks end) const {
+  return dram_ ? dram_->statistics(end) : std::vector<DramStatistics>();
 }
 
 BankAccess Banks::read_otherwise(Address address, std::uint32_t bytes, sim::Ticks arrival) {

@@ -94,8 +94,8 @@ class Banks {
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
-  /// Of each channel of a DRAM memory; empty if it is none.
-  [[nodiscard]] std::vector<DramStatistics> dram_statistics() const;
+  /// Of each channel of a DRAM memory, for a frame that ends at `end`; empty if it is none.
+  [[nodiscard]] std::vector<DramStatistics> dram_statistics(sim::Ticks end) const;
   /// The cache before the banks; null without one.
   [[nodiscard]] SharedCache* cache() { return cache_ ? &*cache_ : nullptr; }
   /// Statistics of the cache; null without a cache.

@@ -19,8 +19,8 @@ std::vector<BankStatistics> Banked::bank_statistics() const {
   return late_ ? late_->bank_statistics() : banks_.statistics();
 }
 
-std::vector<DramStatistics> Banked::dram_statistics() const {
-  return late_ ? late_->statistics() : banks_.dram_statistics();
+std::vector<DramStatistics> Banked::dram_statistics(sim::Ticks end) const {
+  return late_ ? late_->statistics(end) : banks_.dram_statistics(end);
 }
 
 sim::Ticks Banked::end_of_write(const LateAccess& write) const { return write.ready; }

@@ -17,7 +17,7 @@ class Banked : public Interconnect {
  public:
   void proceed(std::uint32_t port, std::uint32_t sequence) override;
   [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override;
-  [[nodiscard]] std::vector<DramStatistics> dram_statistics() const override;
+  [[nodiscard]] std::vector<DramStatistics> dram_statistics(sim::Ticks end) const override;
   [[nodiscard]] const SharedCacheStatistics* cache_statistics() const override {
     return banks_.cache_statistics();
   }

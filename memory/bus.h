@@ -106,6 +106,8 @@ void Bus::read_for(Client& client, const Transaction& transaction) {
   const sim::Ticks data = beats_(transaction.bytes);
   const sim::Ticks done = add_ticks(access.ready, data);
   take(now, done - start);
+  statistics_.data += data;
+  statistics_.held += access.ready - sent;
   client.read_done(transaction.port, {done, start - now, add_ticks(address_, data), access.start - sent,
                                       access.ready - access.start});
 }
@@ -114,6 +116,7 @@ template <class Client>
 inline void Bus::send_data(Client& client, std::uint32_t port, const Pending& read, sim::Ticks ready) {
   const sim::Ticks data = beats_(read.bytes);
   const sim::Ticks start = take(ready, data);
+  statistics_.data += data;
   client.read_done(port, {sim::add_ticks(start, data), read.wait_interconnect + (start - ready),
                           sim::add_ticks(address_, data), read.wait_bank, read.bank});
 }
@@ -122,7 +125,9 @@ template <class Client>
 void Bus::write_for(Client& client, const Transaction& transaction) {
   ++statistics_.writes;
   statistics_.bytes += transaction.bytes;
-  const sim::Ticks length = sim::add_ticks(address_, beats_(transaction.bytes));
+  const sim::Ticks data = beats_(transaction.bytes);
+  const sim::Ticks length = sim::add_ticks(address_, data);
+  statistics_.data += data;
   const sim::Ticks sent = sim::add_ticks(take(site_.engine.now(), length), length);
   if (late()) [[unlikely]] {
     ask_late(transaction, true, sent);

@@ -55,6 +55,7 @@ void Crossbar::send_data(const Transaction& transaction, Ticks arrival, const Ba
   const Ticks sent = add_ticks(start, data);
   links_[bank].hold_until(sent);
   statistics_.busy += data;
+  statistics_.data += data;
   statistics_.waits.add(start - access.ready);
   const Ticks way = add_ticks(latency_, latency_);
   site_.client.read_done(transaction.port,

@@ -80,6 +80,8 @@ std::vector<BankStatistics> Distributed::bank_statistics() const {
 Delivery Distributed::send(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) {
   const Delivery delivery = network_->send(site_.engine.now(), from, to, bytes);
   statistics_.busy = network_->statistics().busy;
+  statistics_.data = network_->statistics().data;
+  statistics_.held = statistics_.busy - statistics_.data;
   statistics_.waits.add(delivery.wait);
   return delivery;
 }

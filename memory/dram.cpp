@@ -19,10 +19,10 @@ Dram::Times Dram::access(Address address, std::uint32_t bytes, bool write, sim::
           sim::multiply_ticks(burst_ticks_, request.bursts)};
 }
 
-std::vector<DramStatistics> Dram::statistics() const {
+std::vector<DramStatistics> Dram::statistics(sim::Ticks end) const {
   std::vector<DramStatistics> all;
   for (const DramInOrder& channel : channels_) {
-    all.push_back(channel.statistics());
+    all.push_back(channel.statistics(end));
   }
   return all;
 }

@@ -54,7 +54,7 @@ class Dram {
   Times access(Address address, std::uint32_t bytes, bool write, sim::Ticks arrival);
 
   [[nodiscard]] std::uint32_t channel_of(Address address) const { return mapping_.channel(address); }
-  [[nodiscard]] std::vector<DramStatistics> statistics() const;
+  [[nodiscard]] std::vector<DramStatistics> statistics(sim::Ticks end) const;
 
  private:
   DramClock clock_;

@@ -47,6 +47,10 @@ class DramDevice {
   }
   /// The first cycle in which the command is allowed, as far as the commands issued so far tell.
   [[nodiscard]] DramCycle earliest(DramCommand command, const DramPlace& place) const;
+  /// From when on the bank's row, the last one that was opened, is open for a read or write.
+  [[nodiscard]] DramCycle open_from(const DramPlace& place, bool write) const {
+    return of(banks_[place.bank].next, write ? DramCommand::write : DramCommand::read);
+  }
   /// Issues a command that is allowed at `cycle`. Commands may be issued out of the order of their times if
   /// none of them would have moved the other. A read or write with `close` closes its row by itself.
   void issue(DramCommand command, const DramPlace& place, DramCycle cycle, bool close = false);

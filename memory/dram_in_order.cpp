@@ -7,14 +7,16 @@ namespace marti::memory {
 
 DramInOrder::DramInOrder(const DramConfig& config)
     : refi_(config.timing.refi),
+      rfc_(config.timing_of_commands().rfc),
       period_(config.period),
-      burst_time_(config.burst_time()),
+      burst_time_(config.period * config.timing.bl),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
       column_cycles_(config.command_steps().column),
       two_command_buses_(config.two_command_buses),
       close_(config.page == DramPage::closed),
       device_(config),
+      buses_(config),
       refresh_due_(config.timing.refi > 0 ? config.timing.refi : std::numeric_limits<DramCycle>::max()) {}
 
 DramService DramInOrder::serve(const DramRequest& request) {
@@ -46,7 +48,7 @@ DramCycle DramInOrder::burst(const DramRequest& request, bool last) {
         ++statistics_.activations;
         prepared_ = course.activate + device_.bus_cycles(DramCommand::activate);
       }
-      end_burst(course.column, course.activate >= 0);
+      end_burst(request, course.column, course.activate >= 0);
       return course.first();
     }
     if (course.first() < refresh_due_) {
@@ -77,7 +79,7 @@ DramCycle DramInOrder::burst_by_commands(const DramRequest& request, bool last, 
     }
     device_.issue(command, request.place, cycle, column && close_ && last);
     if (column) {
-      end_burst(cycle, opened);
+      end_burst(request, cycle, opened);
       return first;
     }
     from = cycle + length;
@@ -101,8 +103,11 @@ DramCycle DramInOrder::refresh_before(const DramRequest& request, DramCycle cycl
   return std::max(from, prepared_);
 }
 
-void DramInOrder::end_burst(DramCycle column, bool opened) {
+void DramInOrder::end_burst(const DramRequest& request, DramCycle column, bool opened) {
   last_column_ = column;
+  buses_.moved({request.place.rank, request.arrival, request.arrival,
+                device_.open_from(request.place, request.write), column,
+                device_.end_of_data(request.write ? DramCommand::write : DramCommand::read, column)});
   if (two_command_buses_) {
     prepared_ = opened ? prepared_ : column;
     return;
@@ -135,6 +140,7 @@ void DramInOrder::refresh(DramCycle cycle) {
   // While nothing is asked for, each refresh begins when it is due: only the last one matters.
   const auto [more, last] = device_.due_refreshes(refresh_due_, cycle);
   const bool idle = last >= std::max({last_column_, last_precharge_, last_refresh_}) + device_.settling();
+  const DramCycle due = idle ? last : refresh_due_;
   DramCycle end = std::max(last_column_ + (two_command_buses_ ? 0 : column_cycles_), prepared_);
   for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
     if (idle) {
@@ -149,6 +155,7 @@ void DramInOrder::refresh(DramCycle cycle) {
       last_refresh_ = std::max(start, device_.earliest_refresh(rank));
       device_.refresh(rank, last_refresh_);
     }
+    buses_.refreshed(rank, due, last_refresh_ + rfc_);
     end = last_refresh_ + 1;
   }
   prepared_ = end;

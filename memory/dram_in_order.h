@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "memory/dram_buses.h"
 #include "memory/dram_device.h"
 #include "memory/dram_statistics.h"
 
@@ -39,7 +40,12 @@ class DramInOrder {
   /// Serves the next access; arrivals must not decrease.
   DramService serve(const DramRequest& request);
 
-  [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
+  /// What was counted, for a frame that ends at `end`.
+  [[nodiscard]] DramStatistics statistics(sim::Ticks end) const {
+    DramStatistics all = statistics_;
+    buses_.count(all, end);
+    return all;
+  }
 
  private:
   // Opens the row of an access and issues the command of its first or next burst; returns the cycle of the
@@ -54,11 +60,12 @@ class DramInOrder {
   // can be issued, not before `from`.
   DramCycle refresh_before(const DramRequest& request, DramCycle cycle, DramCycle from);
   // Notes the cycle of a burst's read or write; `opened`: the burst has opened its row.
-  void end_burst(DramCycle column, bool opened);
+  void end_burst(const DramRequest& request, DramCycle column, bool opened);
   // Does the refreshes that are due up to `cycle`.
   void refresh(DramCycle cycle);
 
   DramCycle refi_;
+  DramCycle rfc_;
   sim::Ticks period_;
   sim::Ticks burst_time_;
   std::uint32_t ranks_;
@@ -67,6 +74,7 @@ class DramInOrder {
   bool two_command_buses_;
   bool close_;
   DramDevice device_;
+  DramBuses buses_;
   DramStatistics statistics_;
   DramCycle prepared_ = 0;      // from when on the next access may close and open rows
   DramCycle last_column_ = -1;  // cycle of the last read or write

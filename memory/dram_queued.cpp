@@ -11,7 +11,7 @@ DramQueued::DramQueued(const DramConfig& config)
       refi_(config.timing_of_commands().refi),
       rfc_(config.timing_of_commands().rfc),
       period_(config.period),
-      burst_time_(config.burst_time()),
+      burst_time_(config.period * config.timing.bl),
       ranks_(config.ranks),
       burst_bytes_(config.burst_bytes),
       queue_(config.queue),
@@ -21,6 +21,7 @@ DramQueued::DramQueued(const DramConfig& config)
       second_within_(config.second_activation),
       clock_tail_(config.data_clock_tail),
       device_(config),
+      buses_(config),
       // With half cycles a refresh falls due half a cycle early.
       refresh_due_(refi_ > 0 ? refi_ + 1 - steps_ : never) {}
 
@@ -88,6 +89,9 @@ std::optional<DramDone> DramQueued::serve_alone(const DramRequest& request, std:
   use_slot(moving, course.column);
   count_start(request.arrival, course.first_command(request.write), course.first());
   statistics_.count_moved(request.write, 1, burst_bytes_, burst_time_);
+  buses_.moved({request.place.rank, request.arrival, request.arrival,
+                device_.open_from(request.place, request.write), course.column,
+                device_.end_of_data(moving, course.column)});
   count_queued(request.arrival, course.column);
   now_ = course.column;
   // As step() leaves it, which decides anew at each command by what waits before it.
@@ -269,6 +273,27 @@ void DramQueued::count_start(DramCycle arrival, DramCommand command, DramCycle c
   }
 }
 
+DramCycle DramQueued::asked_for_bus(std::uint32_t rank, DramCycle arrival) const {
+  const auto on_the_bus = [&](const Burst& burst) {
+    return buses_.bus_of(burst.place.rank) == buses_.bus_of(rank);
+  };
+  // Each list is in the order of arrival.
+  const auto look = [&](const auto& bursts) {
+    const auto first = std::find_if(bursts.begin(), bursts.end(), on_the_bus);
+    if (first != bursts.end()) {
+      arrival = std::min(arrival, accesses_[first->access].arrival);
+    }
+  };
+  look(reads_);
+  look(writes_);
+  look(active_);
+  look(before_);
+  if (activating_ && on_the_bus(*activating_)) {
+    arrival = std::min(arrival, accesses_[activating_->access].arrival);
+  }
+  return arrival;
+}
+
 void DramQueued::count_queued(DramCycle arrival, DramCycle last) {
   statistics_.queued += period_ * (last - arrival) / steps_;
 }
@@ -319,6 +344,9 @@ std::optional<DramDone> DramQueued::issue(std::vector<Burst>& from, const Pick& 
   }
   statistics_.count_moved(leaving.write, 1, burst_bytes_, burst_time_);
   Access& access = accesses_[leaving.access];
+  buses_.moved({leaving.place.rank, access.arrival, asked_for_bus(leaving.place.rank, access.arrival),
+                device_.open_from(leaving.place, leaving.write), cycle,
+                device_.end_of_data(pick.command, cycle)});
   access.service.end = std::max(access.service.end, device_.end_of_data(pick.command, cycle));
   if (--access.left > 0) {
     return std::nullopt;
@@ -345,6 +373,7 @@ void DramQueued::issue_refresh(const Pick& pick) {
   }
   device_.refresh(refresh_rank_, pick.cycle);
   last_refresh_ = pick.cycle;
+  buses_.refreshed(refresh_rank_, refresh_due_, pick.cycle + rfc_);
   ++statistics_.refreshes;
   if (++refresh_rank_ == ranks_) {
     stall_begin_ = refresh_due_;
@@ -362,6 +391,7 @@ void DramQueued::catch_up(DramCycle cycle) {
     if (more > 0 && refresh_rank_ == 0 && last >= before + device_.settling()) {
       for (std::uint32_t rank = 0; rank < ranks_; ++rank) {
         last_refresh_ = device_.refresh_idle(rank, whole(last) + rank * steps_, true);
+        buses_.refreshed(rank, last, last_refresh_ + rfc_);
       }
       next_row_ = last_refresh_ + 1;
       next_column_ = two_command_buses_ ? next_column_ : next_row_;

@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "memory/dram_buses.h"
 #include "memory/dram_device.h"
 #include "memory/dram_in_order.h"
 #include "memory/dram_statistics.h"
@@ -50,7 +51,12 @@ class DramQueued {
   [[nodiscard]] bool idle() const {
     return reads_.empty() && writes_.empty() && active_.empty() && before_.empty() && !activating_;
   }
-  [[nodiscard]] const DramStatistics& statistics() const { return statistics_; }
+  /// What was counted, for a frame that ends at `end`.
+  [[nodiscard]] DramStatistics statistics(sim::Ticks end) const {
+    DramStatistics all = statistics_;
+    buses_.count(all, end);
+    return all;
+  }
 
  private:
   struct Burst {
@@ -116,6 +122,9 @@ class DramQueued {
   void count_start(DramCycle arrival, DramCommand command, DramCycle cycle);
   // Counts how long an access waited for its last command.
   void count_queued(DramCycle arrival, DramCycle last);
+  // The earliest arrival of the accesses that wait to move data on the bus of a rank; `arrival` at the
+  // latest.
+  [[nodiscard]] DramCycle asked_for_bus(std::uint32_t rank, DramCycle arrival) const;
   void use_slot(DramCommand command, DramCycle cycle);
   void issue_refresh(const Pick& pick);
   // Moves what waits before the queues into them.
@@ -137,6 +146,7 @@ class DramQueued {
   DramCycle second_within_;
   DramCycle clock_tail_;
   DramDevice device_;
+  DramBuses buses_;
   DramStatistics statistics_;
   std::vector<Burst> reads_;
   std::vector<Burst> writes_;

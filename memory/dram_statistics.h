@@ -20,11 +20,16 @@ struct DramStatistics {
   std::int64_t activations = 0;
   std::int64_t refreshes = 0;
   std::int64_t bytes = 0;
+  std::int64_t data_buses = 0;
   sim::Ticks data_busy = 0;
+  sim::Ticks bus_rows = 0;
+  sim::Ticks bus_refresh = 0;
+  sim::Ticks bus_turn = 0;
+  sim::Ticks bus_no_request = 0;
   sim::Ticks refresh_stall = 0;
   sim::Sum queued = 0;
 
-  /// Counts bursts that move their data, each so many bytes in so much time of the data bus.
+  /// Counts bursts that move their data, each so many bytes in so much time of a data bus.
   void count_moved(bool write, std::int64_t bursts, std::uint32_t burst_bytes, sim::Ticks burst_time) {
     (write ? write_bursts : read_bursts) += bursts;
     bytes += bursts * burst_bytes;
@@ -46,7 +51,16 @@ struct DramStatistics {
         C{"activations", "1", "rows opened", &S::activations},
         C{"refreshes", "1", "refreshes of a rank, up to the last access", &S::refreshes, sum, neither},
         C{"bytes", "byte", "data moved, in whole bursts", &S::bytes},
-        C{"data_busy", "ps", "time for which the data bus moves data", &S::data_busy},
+        C{"data_buses", "1", "data buses: one, or one for each pseudo channel", &S::data_buses, sum, neither},
+        C{"data_busy", "ps", "time for which data buses move data", &S::data_busy},
+        C{"bus_rows", "ps", "time for which data buses wait for rows to be closed and opened", &S::bus_rows},
+        C{"bus_refresh", "ps", "time for which data buses wait for a refresh", &S::bus_refresh},
+        C{"bus_turn", "ps",
+          "time for which data buses turn between reads and writes, ranks and bank groups: waits for open "
+          "rows",
+          &S::bus_turn},
+        C{"bus_no_request", "ps", "time for which data buses have no request", &S::bus_no_request, sum,
+          neither},
         C{"refresh_stall", "ps", "time for which the oldest access waits for a refresh", &S::refresh_stall},
         C{"queued", "ps", "time from the arrival of each access to its last read or write command",
           &S::queued}};

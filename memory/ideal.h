@@ -23,6 +23,7 @@ class Ideal final : public Interconnect {
     statistics_.reads += reads;
     statistics_.bytes += bytes;
     statistics_.busy += sim::Sum{latency_} * reads;
+    statistics_.held += sim::Sum{latency_} * reads;
     statistics_.waits.add_unwaited(reads);
   }
   void write(const Transaction& transaction) override {
@@ -38,6 +39,7 @@ class Ideal final : public Interconnect {
   void count(const Transaction& transaction) {
     statistics_.bytes += transaction.bytes;
     statistics_.busy += latency_;
+    statistics_.held += latency_;
     statistics_.waits.add(0);
   }
 

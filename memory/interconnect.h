@@ -77,13 +77,16 @@ class InterconnectClient {
 };
 
 /// The traffic of an interconnect. `busy` is the sum of the transfer times of all links; `links` is the
-/// number of transfers that are possible at the same time.
+/// number of transfers that are possible at the same time. What of `busy` is neither `data` nor `held` sends
+/// addresses.
 struct InterconnectStatistics {
   std::int64_t reads = 0;
   std::int64_t writes = 0;
   std::int64_t bytes = 0;
   std::int64_t links = 0;
   sim::Sum busy = 0;
+  sim::Sum data = 0;
+  sim::Sum held = 0;
   WaitStatistics waits;
 
   static constexpr auto counters() {
@@ -93,7 +96,12 @@ struct InterconnectStatistics {
                       C{"bytes", "byte", "data moved by both", &InterconnectStatistics::bytes},
                       C{"links", "1", "transfers possible at the same time", &InterconnectStatistics::links,
                         sim::MergeRule::sum, sim::Better::neither},
-                      C{"busy", "ps", "transfer time of all links together", &InterconnectStatistics::busy}};
+                      C{"busy", "ps", "transfer time of all links together", &InterconnectStatistics::busy},
+                      C{"data", "ps", "part of it in which they move data", &InterconnectStatistics::data},
+                      C{"held", "ps",
+                        "part of it without a transfer: a held bus, while its bank works; the latency of a "
+                        "network's bus, or of an ideal interconnect",
+                        &InterconnectStatistics::held}};
   }
 };
 
@@ -125,8 +133,8 @@ class Interconnect {
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks; empty where no banks are modelled.
   [[nodiscard]] virtual std::vector<BankStatistics> bank_statistics() const = 0;
-  /// Statistics of each channel of a DRAM memory; empty where there is none.
-  [[nodiscard]] virtual std::vector<DramStatistics> dram_statistics() const { return {}; }
+  /// Statistics of each channel of a DRAM memory, for a frame that ends at `end`; empty where there is none.
+  [[nodiscard]] virtual std::vector<DramStatistics> dram_statistics(sim::Ticks /*end*/) const { return {}; }
   /// The destinations of accesses to a distributed memory; null for all others.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }
   [[nodiscard]] virtual const NetworkStatistics* network_statistics() const { return nullptr; }

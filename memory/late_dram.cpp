@@ -94,10 +94,10 @@ void LateDram::post(std::uint32_t channel, DramCycle command) {
   site_.engine.post(sim::Event::make(time, site_.memory_class, site_.first_component, 1 + channel));
 }
 
-std::vector<DramStatistics> LateDram::statistics() const {
+std::vector<DramStatistics> LateDram::statistics(sim::Ticks end) const {
   std::vector<DramStatistics> all;
   for (const Channel& channel : channels_) {
-    all.push_back(channel.dram.statistics());
+    all.push_back(channel.dram.statistics(end));
   }
   return all;
 }

@@ -80,7 +80,7 @@ class LateDram {
     proceed(channel, sim::add_ticks(site_.engine.now(), notice_), done);
   }
 
-  [[nodiscard]] std::vector<DramStatistics> statistics() const;
+  [[nodiscard]] std::vector<DramStatistics> statistics(sim::Ticks end) const;
   [[nodiscard]] WriteOrder& writes() { return writes_; }
   /// Of each channel, as those of banks.
   [[nodiscard]] const std::vector<BankStatistics>& bank_statistics() const { return banks_; }

@@ -86,6 +86,7 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
     });
     statistics_.hops += links;
     statistics_.busy += sim::Sum{held} * links;
+    statistics_.data += sim::Sum{data} * links;
     const Ticks hops = sim::multiply_ticks(hop_, links);
     const Ticks transfer = add_ticks(hops, data);
     const auto wait = static_cast<Ticks>(crossing.head - static_cast<std::uint64_t>(now) -

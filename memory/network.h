@@ -51,6 +51,7 @@ struct NetworkStatistics {
   std::int64_t link_bytes = 0;
   std::int64_t links = 0;
   sim::Sum busy = 0;
+  sim::Sum data = 0;
   WaitStatistics waits;  ///< one for each message, the sum over its links
 
   static constexpr auto counters() {
@@ -63,7 +64,9 @@ struct NetworkStatistics {
           &NetworkStatistics::link_bytes},
         C{"links", "1", "transfers possible at the same time", &NetworkStatistics::links, sim::MergeRule::sum,
           sim::Better::neither},
-        C{"busy", "ps", "time that messages held links, all together", &NetworkStatistics::busy}};
+        C{"busy", "ps", "time that messages held links, all together", &NetworkStatistics::busy},
+        C{"data", "ps", "part of it in which their bytes moved; of a bus the rest is its latency",
+          &NetworkStatistics::data}};
   }
 };
 

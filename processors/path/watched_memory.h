@@ -30,8 +30,8 @@ class WatchedMemory final : public memory::Interconnect, private memory::Interco
   [[nodiscard]] std::vector<memory::BankStatistics> bank_statistics() const override {
     return memory_->bank_statistics();
   }
-  [[nodiscard]] std::vector<memory::DramStatistics> dram_statistics() const override {
-    return memory_->dram_statistics();
+  [[nodiscard]] std::vector<memory::DramStatistics> dram_statistics(sim::Ticks end) const override {
+    return memory_->dram_statistics(end);
   }
   [[nodiscard]] const memory::DistributedStatistics* distribution() const override {
     return memory_->distribution();

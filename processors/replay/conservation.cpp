@@ -42,8 +42,45 @@ void check_distributed(const ClusterResult& cluster) {
   walk::require(served == traffic.reads + traffic.writes, "every access is served by one memory");
 }
 
-void check_dram(const ClusterResult& cluster) {
+// What the links of a bus or crossbar do. Those of a network are checked as a network's.
+void check_links(const memory::InterconnectStatistics& traffic, const machine::MachineConfig& config,
+                 sim::Ticks end) {
+  const memory::InterconnectConfig& link = config.interconnect;
+  walk::require(traffic.busy <= sim::Sum{end} * traffic.links,
+                "links are not busy for longer than the frame");
+  if (config.placement == machine::Placement::distributed) {
+    return;
+  }
+  const bool bus = link.kind == memory::InterconnectKind::bus;
+  const sim::Sum addresses =
+      bus ? sim::Sum{link.clock.cycles(link.address_cycles)} * (traffic.reads + traffic.writes) : sim::Sum{0};
+  walk::require(traffic.busy == traffic.data + addresses + traffic.held,
+                "links move data, send an address for each transaction of a bus, or are held");
+  walk::require(traffic.held == 0 || (bus && link.mode == memory::BusMode::held),
+                "only a held bus is held while its bank works");
+}
+
+void check_network(const memory::NetworkStatistics& network, const memory::NetworkConfig& config,
+                   sim::Ticks end) {
+  const sim::Sum latency = config.kind == memory::NetworkKind::bus
+                               ? sim::Sum{config.clock.cycles(config.hop_cycles)} * network.messages
+                               : sim::Sum{0};
+  walk::require(network.busy == network.data + latency,
+                "a network's links move bytes; its bus has a latency");
+  walk::require(network.busy <= sim::Sum{end} * network.links,
+                "a network's links are not busy for longer than the frame");
+}
+
+void check_dram(const ClusterResult& cluster, const machine::MachineConfig& config, sim::Ticks end) {
   for (const memory::DramStatistics& channel : cluster.dram) {
+    const sim::Ticks burst = config.banks.dram->period * config.banks.dram->timing.bl;
+    walk::require(channel.data_busy == sim::multiply_ticks(burst, channel.read_bursts + channel.write_bursts),
+                  "the data buses of DRAM move data for the time of its bursts");
+    walk::require(channel.bus_no_request >= 0, "no data of DRAM move after the end of the frame");
+    walk::require(sim::Sum{channel.data_busy} + channel.bus_rows + channel.bus_refresh + channel.bus_turn +
+                          channel.bus_no_request ==
+                      sim::Sum{end} * channel.data_buses,
+                  "what the data buses of DRAM do adds up to the frame time");
     walk::require(channel.row_hits + channel.row_misses + channel.row_conflicts ==
                       channel.read_bursts + channel.write_bursts,
                   "every burst of DRAM finds its row open, another row or none");
@@ -112,13 +149,20 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
     reads += traffic.reads;
     writes += traffic.writes;
     interconnect_waits += traffic.waits.sum;
-    walk::require(!node::has_links(config) || traffic.busy <= sim::Sum{result.end} * traffic.links,
-                  "links are not busy for longer than the frame");
+    if (node::has_links(config)) {
+      check_links(traffic, config, result.end);
+    }
+    if (cluster.distributed) {
+      check_network(cluster.distributed->network, config.network, result.end);
+    }
     for (const memory::BankStatistics& bank : cluster.banks) {
       bank_waits += bank.waits.sum;
     }
     check_distributed(cluster);
-    check_dram(cluster);
+    check_dram(cluster, config, result.end);
+  }
+  for (const memory::NetworkStatistics& network : result.flow.networks) {
+    check_network(network, config.network, result.end);
   }
   const node::BuildCounts built = result.build.counts();
   const bool own_memories =

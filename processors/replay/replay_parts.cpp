@@ -37,7 +37,7 @@ MachineResult common_result(const machine::MachineConfig& config, const sim::Eng
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
-    result.clusters.back().dram = interconnect->dram_statistics();
+    result.clusters.back().dram = interconnect->dram_statistics(result.end);
     if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
       result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
     }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "processors/cost/accounting.h"
+#include "processors/node/memory_system.h"
 #include "processors/replay/bounds.h"
 #include "sim/error.h"
 #include "studies/figures/counted_parts.h"
@@ -94,9 +95,27 @@ void add_nodes(FigureParts& parts, const MachineResult& r, const MachineTotals& 
             there ? std::optional(last->finish) : std::nullopt);
 }
 
-void add_memory(FigureParts& parts, const MachineTotals& totals) {
+// What is left of the frame time of all links; 0 without links.
+template <class S>
+sim::Sum idle_of(sim::Ticks end, const std::optional<sim::Sums<S>>& links) {
+  sim::Sum idle = 0;
+  if (links) {
+    links->for_each([&](const auto& counter, sim::Sum value) {
+      idle += counter.name == "links" ? sim::Sum{end} * value : counter.name == "busy" ? -value : sim::Sum{0};
+    });
+  }
+  return idle;
+}
+
+void add_memory(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,
+                const MachineTotals& totals) {
   parts.add_all("interconnect_", "interconnects of all clusters (distributed memory: its network)",
                 totals.interconnect);
+  const bool links = totals.interconnect.has_value() && processors::node::has_links(machine);
+  parts.add("interconnect_no_request",
+            {"ps", "time for which links transfer nothing, because nobody asks for it", Merge::sum,
+             Better::neither},
+            only(links, idle_of(r.end, totals.interconnect)));
   parts.add("most_interconnect_busy",
             {"ps", "transfer time of the busiest cluster's interconnect", Merge::largest},
             only(totals.interconnect.has_value(), totals.most_interconnect_busy));
@@ -113,6 +132,8 @@ void add_memory(FigureParts& parts, const MachineTotals& totals) {
   parts.add_all("dram_", "DRAM channels", totals.dram);
   parts.add_all("distributed_", "distributed memory", totals.distributed);
   parts.add_all("network_", "networks of all clusters", totals.network);
+  parts.add("network_no_request", {"ps", "time for which links have no message", Merge::sum, Better::neither},
+            only(totals.network.has_value(), idle_of(r.end, totals.network)));
   parts.add("most_network_busy",
             {"ps", "time that messages held the links of the busiest cluster's network", Merge::largest},
             only(totals.network.has_value(), totals.most_network_busy));
@@ -124,7 +145,7 @@ void add_all(FigureParts& parts, const MachineConfig& machine, const MachineResu
   add_machine(parts, result);
   add_references(parts, result);
   add_nodes(parts, result, totals);
-  add_memory(parts, totals);
+  add_memory(parts, machine, result, totals);
   add_flow_figures(parts, machine, result, totals);
   add_build_figures(parts, result);
   add_cache_figures(parts, result, totals);

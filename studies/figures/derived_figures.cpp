@@ -84,6 +84,54 @@ void add_speed(std::vector<FigureEntry>& all) {
   }
 }
 
+// The steps of the work log, as its totals count them.
+Formula all_steps() {
+  Formula sum = own("steps_camera_rays");
+  for (const std::string_view step :
+       {"shadow_rays", "reflection_rays", "refraction_rays", "diffuse_rays", "branches", "leaves", "tests",
+        "shades", "lights", "texels", "cuts", "passes"}) {
+    sum = sum + own("steps_" + std::string(step));
+  }
+  return sum;
+}
+
+// What the time of links and data buses is spent on, each as a share of the whole. The first is the share of
+// the peak that they move.
+void add_shares(std::vector<FigureEntry>& all) {
+  const auto add = [&all](std::string_view name, std::string_view text, Better better, const Formula& part,
+                          const Formula& whole) {
+    all.push_back({std::string(name), "fraction", std::string(text), Merge::ratio, better, part / whole});
+  };
+  const Formula links = own("interconnect_busy") + own("interconnect_no_request");
+  add("interconnect_share_data", "share of the links' time in which they move data: of their peak",
+      Better::higher, own("interconnect_data"), links);
+  add("interconnect_share_address", "share in which a bus sends addresses", Better::lower,
+      own("interconnect_busy") - own("interconnect_data") - own("interconnect_held"), links);
+  add("interconnect_share_held",
+      "share in which a held bus waits for its bank, or a network's bus for its latency", Better::lower,
+      own("interconnect_held"), links);
+  add("interconnect_share_no_request", "share in which nobody asks for them", Better::neither,
+      own("interconnect_no_request"), links);
+  const Formula network = own("network_busy") + own("network_no_request");
+  add("network_share_data", "share of the links' time in which they move bytes: of their peak",
+      Better::higher, own("network_data"), network);
+  add("network_share_latency", "share in which a network's bus waits for its latency", Better::lower,
+      own("network_busy") - own("network_data"), network);
+  add("network_share_no_request", "share in which they have no message", Better::neither,
+      own("network_no_request"), network);
+  const Formula buses = own("end") * own("dram_data_buses");
+  add("dram_share_data", "share of the data buses' time in which they move data: of their peak",
+      Better::higher, own("dram_data_busy"), buses);
+  add("dram_share_rows", "share in which they wait for rows to be closed and opened", Better::lower,
+      own("dram_bus_rows"), buses);
+  add("dram_share_refresh", "share in which they wait for a refresh", Better::lower, own("dram_bus_refresh"),
+      buses);
+  add("dram_share_turn", "share in which they turn between reads and writes, ranks and bank groups",
+      Better::lower, own("dram_bus_turn"), buses);
+  add("dram_share_no_request", "share in which they have no request", Better::neither,
+      own("dram_bus_no_request"), buses);
+}
+
 void add_memory(std::vector<FigureEntry>& all) {
   const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
                           const Formula& formula) {
@@ -98,6 +146,16 @@ void add_memory(std::vector<FigureEntry>& all) {
               "of lines of this kind looked up in the first level");
   }
   hit_ratio("l2_hit_ratio", "l2_", "of lines looked up in the second level");
+  const Formula thousand_steps = all_steps() / Formula(1000.0);
+  add("misses_a_thousand_steps", "1", "of the first level, for a thousand steps of all nodes", Better::lower,
+      own("misses") / thousand_steps);
+  for (const std::string_view name : memory::record_kind_names) {
+    const std::string kind(name);
+    add("misses_a_thousand_steps_" + kind, "1", "those of lines of this kind", Better::lower,
+        own(kind + "_misses") / thousand_steps);
+  }
+  add("l2_misses_a_thousand_steps", "1", "of the second level, for a thousand steps of all nodes",
+      Better::lower, own("l2_misses") / thousand_steps);
   const Formula end = own("end");
   const auto of_links = [&end](const std::string& what) {
     return own("most_" + what + "_busy") / (end * (own(what + "_links") / own("clusters")));
@@ -122,6 +180,11 @@ void add_memory(std::vector<FigureEntry>& all) {
       Better::lower, own("dram_queued") / channel_time);
   add("dram_bandwidth", "byte/s", "data that DRAM moves, in whole bursts", Better::higher,
       own("dram_bytes") * Formula(1e12) / end);
+  add("interconnect_bandwidth", "byte/s", "data that nodes and memory exchange", Better::higher,
+      own("interconnect_bytes") * Formula(1e12) / end);
+  add("network_bandwidth", "byte/s", "bytes of messages over all links that they cross", Better::higher,
+      own("network_link_bytes") * Formula(1e12) / end);
+  add_shares(all);
   add("network_utilisation", "fraction",
       "share of the frame time that messages hold the busiest cluster's links", Better::lower,
       of_links("network"));

@@ -118,7 +118,7 @@ std::string flow_lines(const run::RunResult& r) {
                    tables::seconds(r.count("network_wait_max")));
   }
   text += "\n";
-  return text;
+  return text + network_bandwidth_line(r);
 }
 
 }  // namespace marti::studies::show

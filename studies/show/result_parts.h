@@ -24,6 +24,13 @@ namespace marti::studies::show {
 [[nodiscard]] nlohmann::ordered_json simt_json(const run::RunResult& result);
 [[nodiscard]] std::string simt_lines(const run::RunResult& result);
 
+/// Bytes a second, of how many, and what the time of links and data buses is spent on: parts that add up to
+/// the whole. Empty where there are no links or no messages.
+[[nodiscard]] std::string interconnect_bandwidth_line(const run::RunResult& result);
+[[nodiscard]] std::string network_bandwidth_line(const run::RunResult& result);
+/// The memory must be one of DRAM.
+[[nodiscard]] std::string dram_bandwidth_line(const run::RunResult& result);
+
 /// Contexts and prefetching.
 [[nodiscard]] nlohmann::ordered_json context_json(const run::RunResult& result);
 [[nodiscard]] std::string context_lines(const run::RunResult& result);

@@ -173,6 +173,7 @@ void distribution_lines(Lines out, const run::RunResult& r) {
     fmt::format_to(out, "  {:<12}{} of its links busy, {}\n",
                    memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
                    tables::rough_percent(*used), waiting(r, "network", r.totals.network_waits));
+    fmt::format_to(out, "{}", network_bandwidth_line(r));
   }
 }
 
@@ -181,27 +182,26 @@ void dram_lines(Lines out, const run::RunResult& r) {
   fmt::format_to(out, "  {:<12}{} of the bursts hit, {} conflict; {:.2f} accesses in a queue\n", "rows",
                  share("dram_row_hit_ratio"), share("dram_row_conflict_ratio"),
                  r.figure("dram_queue_length").value_or(0.0));
-  fmt::format_to(out, "  {:<12}{:.2f} GB/s of {:.1f}; refreshes hold accesses up for {} of the time\n",
-                 "data", r.figure("dram_bandwidth").value_or(0.0) / 1e9,
-                 r.machine.banks.dram->peak_bandwidth() * r.machine.clusters / 1e9,
-                 share("dram_refresh_share"));
+  fmt::format_to(out, "{}", dram_bandwidth_line(r));
 }
 
 void memory_lines(Lines out, const run::RunResult& r) {
-  const TextColumns table = {14, {15, 16, 11}};
-  fmt::format_to(out, "\n{}", table.row("references", {"lines", "misses", "hit ratio"}));
-  const auto line = [&](std::string_view name, const std::string& prefix, const std::string& hit_ratio) {
+  const TextColumns table = {14, {15, 16, 11, 16}};
+  fmt::format_to(out, "\n{}", table.row("references", {"lines", "misses", "hit ratio", "per 1000 steps"}));
+  const auto line = [&](std::string_view name, const std::string& prefix, const std::string& kind) {
     const std::int64_t misses = r.count(prefix + "misses");
     if (const std::int64_t lines = r.count(prefix + "hits") + misses; lines > 0) {
-      fmt::format_to(out, "{}",
-                     table.row(fmt::format("  {}", name), {tables::grouped(lines), tables::grouped(misses),
-                                                           percent(r.figure(hit_ratio))}));
+      fmt::format_to(
+          out, "{}",
+          table.row(fmt::format("  {}", name),
+                    {tables::grouped(lines), tables::grouped(misses), percent(r.figure("hit_ratio" + kind)),
+                     ratio(r.figure("misses_a_thousand_steps" + kind), 2)}));
     }
   };
   for (const std::string_view kind : memory::record_kind_names) {
-    line(kind, std::string(kind) + "_", "hit_ratio_" + std::string(kind));
+    line(kind, std::string(kind) + "_", "_" + std::string(kind));
   }
-  line("all", "", "hit_ratio");
+  line("all", "", "");
   fmt::format_to(out, "{}", second_level_line(r));
   if (r.machine.scheme == processors::machine::Scheme::space) {
     return;  // nodes share no memory
@@ -220,6 +220,7 @@ void memory_lines(Lines out, const run::RunResult& r) {
     fmt::format_to(out, "\n{:<14}{} busy, {}, {} moved\n", figures::interconnect_name(r.machine),
                    tables::rough_percent(r.figure("interconnect_utilisation").value_or(0.0)),
                    waiting(r, "interconnect", r.totals.interconnect_waits), tables::bytes(moved));
+    fmt::format_to(out, "{}", interconnect_bandwidth_line(r));
   }
   const bool dram = r.machine.banks.dram.has_value() && !distributed;
   fmt::format_to(out, "{:<14}{} busy (the busiest {}), {}\n",

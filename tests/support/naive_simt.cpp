@@ -203,7 +203,7 @@ class NaiveSimt final : public sim::EventHandler {
     }
     for (const auto& interconnect : interconnects_) {
       result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
-      result.clusters.back().dram = interconnect->dram_statistics();
+      result.clusters.back().dram = interconnect->dram_statistics(result.end);
       if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
         result.l2.caches.push_back(cache->lookups);
         result.l2.waits.push_back(cache->waits);

@@ -93,7 +93,7 @@ TEST(DramInterconnect, EventsFindWhatTheChannelsAloneDo) {
       ASSERT_EQ(service.done - issues[i].at,
                 service.wait_bank + service.bank + service.transfer + service.wait_interconnect);
     }
-    for (const DramStatistics& channel : ports.interconnect->dram_statistics()) {
+    for (const DramStatistics& channel : ports.interconnect->dram_statistics(0)) {
       bytes += channel.bytes;
     }
     EXPECT_EQ(bytes, 300 * std::int64_t{line});

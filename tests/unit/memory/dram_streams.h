@@ -97,13 +97,17 @@ struct StreamResult {
   std::vector<DramService> services;  // of each access
   double mean_cycles = 0.0;           // of a read, from its arrival
   DramCycle last_read = 0;            // the end of the last read
+  DramCycle last = 0;                 // the end of the last access, as that of the frame
   DramStatistics counts;              // of all channels
 };
 
-inline void finish(StreamResult& result, const std::vector<StreamAccess>& accesses) {
+template <class Channel>
+void finish(StreamResult& result, const DramConfig& config, const std::vector<StreamAccess>& accesses,
+            const std::vector<Channel>& channels) {
   std::int64_t reads = 0;
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < accesses.size(); ++i) {
+    result.last = std::max(result.last, result.services[i].end);
     if (!accesses[i].write) {
       ++reads;
       sum += result.services[i].end - accesses[i].arrival;
@@ -111,6 +115,9 @@ inline void finish(StreamResult& result, const std::vector<StreamAccess>& access
     }
   }
   result.mean_cycles = static_cast<double>(sum) / static_cast<double>(reads);
+  for (const Channel& channel : channels) {
+    sim::merge(result.counts, channel.statistics(result.last * config.period));
+  }
 }
 
 inline StreamResult run_in_order(const DramConfig& config, const std::vector<StreamAccess>& accesses,
@@ -121,10 +128,7 @@ inline StreamResult run_in_order(const DramConfig& config, const std::vector<Str
     result.services.push_back(
         channels[access.place.channel].serve({access.place, bursts, access.write, access.arrival}));
   }
-  for (const DramInOrder& channel : channels) {
-    sim::merge(result.counts, channel.statistics());
-  }
-  finish(result, accesses);
+  finish(result, config, accesses, channels);
   return result;
 }
 
@@ -160,9 +164,8 @@ inline StreamResult run_queued(const DramConfig& config, const std::vector<Strea
     while (!channel.idle()) {
       note(channel.step());
     }
-    sim::merge(result.counts, channel.statistics());
   }
-  finish(result, accesses);
+  finish(result, config, accesses, channels);
   return result;
 }
 

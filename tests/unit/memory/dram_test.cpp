@@ -119,6 +119,12 @@ void expect_a_look_at_every_cycle(const DramConfig& config, const std::vector<te
     ASSERT_EQ(result.services[i].first, expected[i].first) << "access " << i;
     ASSERT_EQ(result.services[i].end, expected[i].end) << "access " << i;
   }
+  const test::NaiveDram::BusCycles buses = naive.bus_cycles();
+  EXPECT_EQ(result.counts.data_busy, buses.data * config.period);
+  EXPECT_EQ(result.counts.bus_no_request, buses.no_request * config.period);
+  EXPECT_EQ(result.counts.bus_refresh, buses.refresh * config.period);
+  EXPECT_EQ(result.counts.bus_rows, buses.rows * config.period);
+  EXPECT_EQ(result.counts.bus_turn, buses.turn * config.period);
 }
 
 TEST(Dram, AgreesWithALookAtEveryCycle) {
@@ -165,7 +171,7 @@ TEST(Dram, CountsEveryBurstOnce) {
     EXPECT_EQ(counts.read_bursts + counts.write_bursts, all);
     EXPECT_EQ(counts.row_hits + counts.row_misses + counts.row_conflicts, all);
     EXPECT_EQ(counts.bytes, all * config.burst_bytes);
-    EXPECT_EQ(counts.data_busy, all * config.burst_time());
+    EXPECT_EQ(counts.data_busy, all * config.timing.bl * config.period);
     // Little's law as an identity: the time in the queue is what is left of the time until the last data.
     sim::Ticks queued = 0;
     DramCycle last = 0;
@@ -176,7 +182,9 @@ TEST(Dram, CountsEveryBurstOnce) {
       last = std::max(last, result.services[i].end);
     }
     EXPECT_EQ(counts.queued, queued);
-    EXPECT_LE(counts.data_busy, last * config.period);
+    EXPECT_EQ(
+        counts.data_busy + counts.bus_no_request + counts.bus_refresh + counts.bus_rows + counts.bus_turn,
+        counts.data_buses * last * config.period);
     EXPECT_LE(counts.refresh_stall, last * config.period);
     EXPECT_EQ(counts.refreshes == 0, config.timing.refi == 0 || last <= config.timing.refi);
   }
@@ -232,6 +240,13 @@ TEST(Dram, IdleLatenciesAreClosedForms) {
       EXPECT_EQ(idle_latency(config, 0), hit);
       EXPECT_EQ(idle_latency(config, -1), hit + cycles(t.rcd));
       EXPECT_EQ(idle_latency(config, 1), hit + cycles(t.rp) + cycles(t.rcd));
+      // An access alone waits for its row and for the command that starts the data clock.
+      std::vector<test::StreamAccess> alone(1);
+      alone.front().arrival = 1000;
+      const DramStatistics counts = test::run_stream(config, alone).counts;
+      EXPECT_EQ(counts.bus_rows, cycles(t.rcd) * config.period);
+      EXPECT_EQ(counts.bus_turn, starts_the_clock ? config.period : 0);
+      EXPECT_EQ(counts.bus_refresh, 0);
       config.page = DramPage::closed;
       // What starts the data clock leaves its row open.
       EXPECT_EQ(idle_latency(config, 0), hit + (starts_the_clock ? 0 : cycles(t.rcd)));

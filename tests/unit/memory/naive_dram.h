@@ -37,6 +37,46 @@ class NaiveDram {
     }
     return services_;
   }
+  /// What the data buses do in all cycles of a frame that ends with its last data, by the rule of
+  /// memory/dram_buses.h.
+  struct BusCycles {
+    std::int64_t data = 0, no_request = 0, refresh = 0, rows = 0, turn = 0;
+  };
+  [[nodiscard]] BusCycles bus_cycles() const {
+    BusCycles cycles;
+    DramCycle end = 0;
+    for (const DramService& service : services_) {
+      end = std::max(end, service.end);
+    }
+    for (std::uint32_t bus = 0; bus < (config_.pseudo_channels ? config_.ranks : 1); ++bus) {
+      std::vector<const Burst*> moved;  // those of this bus, in the order of their data
+      for (const Burst& burst : bursts_) {
+        if (!config_.pseudo_channels || burst.place.rank == bus) {
+          moved.push_back(&burst);
+        }
+      }
+      std::sort(moved.begin(), moved.end(),
+                [&](const Burst* a, const Burst* b) { return data_of(*a) < data_of(*b); });
+      for (DramCycle cycle = 0; cycle < end; ++cycle) {
+        const auto next = std::find_if(moved.begin(), moved.end(),
+                                       [&](const Burst* b) { return data_of(*b) + t_.bl > cycle; });
+        if (next == moved.end()) {
+          ++cycles.no_request;
+        } else if (data_of(**next) <= cycle) {
+          ++cycles.data;
+        } else {
+          const DramCycle then = cycle - latency_of(**next);
+          const bool asked =
+              std::any_of(next, moved.end(), [&](const Burst* b) { return b->arrival < then; });
+          ++(!asked                     ? cycles.no_request
+             : refreshing(**next, then) ? cycles.refresh
+             : closed(**next, then)     ? cycles.rows
+                                        : cycles.turn);
+        }
+      }
+    }
+    return cycles;
+  }
   [[nodiscard]] std::int64_t activations() const {
     return std::count_if(history_.begin(), history_.end(), [](const Issued& c) { return c.kind == act; });
   }
@@ -51,6 +91,7 @@ class NaiveDram {
     bool last = false;
     enum State { outside, before, queued, active, done } state = outside;
     std::int64_t passed = 0;
+    DramCycle command = 0;  // its read or write
   };
   struct Issued {
     Kind kind;
@@ -58,6 +99,32 @@ class NaiveDram {
     DramCycle cycle;
     bool close;
   };
+
+  [[nodiscard]] DramCycle latency_of(const Burst& burst) const { return burst.write ? t_.cwl : t_.cl; }
+  [[nodiscard]] DramCycle data_of(const Burst& burst) const { return burst.command + latency_of(burst); }
+  // Whether a refresh of the burst's rank that came before its command was due or under way.
+  [[nodiscard]] bool refreshing(const Burst& burst, DramCycle cycle) const {
+    DramCycle due = 0;
+    for (const Issued& command : history_) {
+      if (command.kind == ref && command.place.rank == burst.place.rank) {
+        due += t_.refi;
+        if (command.cycle < burst.command && due <= cycle && cycle < command.cycle + t_.rfc) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+  // Whether the burst had not arrived, or the activation before its command had not opened its row.
+  [[nodiscard]] bool closed(const Burst& burst, DramCycle cycle) const {
+    DramCycle opened = 0;
+    for (const Issued& command : history_) {
+      if (command.kind == act && command.place.bank == burst.place.bank && command.cycle < burst.command) {
+        opened = command.cycle + (burst.write ? t_.rcd_write : t_.rcd);
+      }
+    }
+    return burst.arrival >= cycle || opened > cycle;
+  }
 
   // From an activation to the next one, if the row was closed as early as possible. One more than tRC is the
   // rounding of tRAS and tRP by themselves.
@@ -192,6 +259,7 @@ class NaiveDram {
       return 0;
     }
     burst.state = Burst::done;
+    burst.command = cycle_;
     service.end = std::max(service.end, cycle_ + (burst.write ? t_.cwl : t_.cl) + t_.bl);
     return 1;
   }

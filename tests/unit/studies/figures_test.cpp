@@ -212,6 +212,32 @@ TEST(SpeedUp, IsAgainstTheSameWorkOnOneNode) {
   EXPECT_GT(larger, 0);
 }
 
+// What links and data buses do adds up to all of their time.
+TEST(Bandwidth, PartsOfTheTimeAddUpForEveryMachine) {
+  std::map<std::string, int> seen;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    test::Random random(seed);
+    const auto [log, machine, options] = any_machine(random, seed);
+    const MachineResult result = processors::replay::replay(log, machine);
+    const Counts counts = counts_of(machine, result);
+    for (const std::string whose : {"interconnect", "network", "dram"}) {
+      double all = 0.0;
+      for (const FigureEntry& entry : derived_figures()) {
+        if (entry.name.starts_with(whose + "_share_")) {
+          const std::optional<double> share = figure_of({&counts}, entry.name);
+          ASSERT_GE(share.value_or(0.0), 0.0) << entry.name << ", seed " << seed;
+          all += share.value_or(0.0);
+        }
+      }
+      if (figure_of({&counts}, whose + "_share_no_request")) {
+        ++seen[whose];
+        ASSERT_NEAR(all, 1.0, 1e-9) << whose << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), 3U);
+}
+
 TEST(LostSpeedUp, AddsUpForEveryMachine) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     test::Random random(seed);

@@ -427,7 +427,7 @@ RunJson whole_result() {
         "cylinders": 0, "cones": 2, "materials": 1},
       "machine": {"end": 10, "nodes": 2, "time_traversal": 15, "time_idle": 5, "lost_extra_misses": 0, "lost_contention": 0.5, "lost_imbalance": 0, "lost_overhead": 0, "lost_idle": 0.25,
         "energy_total": 8, "energy_operations": 2, "energy_l1": 6, "node_hits": 3, "node_misses": 1,
-        "list_hits": 0, "list_misses": 0}},
+        "list_hits": 0, "list_misses": 0, "interconnect_share_data": 0.25, "interconnect_share_no_request": 0.75}},
     "structure": {"node_records": 9, "node_bytes": 8, "levels": [
       {"branches": 1, "leaves": 0, "empty_leaves": 0, "entries": 0},
       {"branches": 0, "leaves": 8, "empty_leaves": 5, "entries": 5}]},

@@ -39,6 +39,7 @@ void Bus::begin_request(tlm::tlm_generic_payload& payload) {
   const Time data = payload.is_write() ? data_time(payload) : 0;
   later_.after(cycles(config_.address_cycles) + data, [this, &payload, keeps_bus] {
     send_to_bank(payload);
+    statistics_.data += payload.is_write() ? data_time(payload) : 0;
     if (!keeps_bus) {
       give_back();
     }
@@ -49,6 +50,7 @@ void Bus::bank_ready(tlm::tlm_generic_payload& payload) {
   if (payload.is_write()) {
     respond(payload);
   } else if (config_.mode == memory::BusMode::held) {
+    statistics_.held += now() - course_of(payload).sent;
     begin_data(payload);
   } else {
     const std::uint32_t node = course_of(payload).node;
@@ -64,6 +66,7 @@ void Bus::take_turn(Turn /*turn*/, std::uint32_t node) {
 void Bus::begin_data(tlm::tlm_generic_payload& payload) {
   course_of(payload).data_start = now();
   later_.after(data_time(payload), [this, &payload] {
+    statistics_.data += data_time(payload);
     give_back();
     respond(payload);
   });

@@ -50,6 +50,7 @@ class Crossbar final : public Interconnect {
     waits_.add(course.data_start - course.ready);
     later_.after(data_time(payload), [this, &payload, &link] {
       statistics_.busy += data_time(payload);
+      statistics_.data += data_time(payload);
       later_.after(cycles(config_.latency_cycles), [this, &payload] { respond(payload); });
       link.taken = false;
       serve(link);

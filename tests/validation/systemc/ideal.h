@@ -17,6 +17,7 @@ class Ideal final : public Interconnect {
   void accept(tlm::tlm_generic_payload& payload) override {
     waits_.add(0);
     statistics_.busy += cycles(config_.latency_cycles);
+    statistics_.held += cycles(config_.latency_cycles);
     later_.after(cycles(config_.latency_cycles), [this, &payload] {
       Course& course = course_of(payload);
       course.granted = course.asked;
