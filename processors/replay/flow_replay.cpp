@@ -18,7 +18,7 @@ MachineResult replay_flow(const program::WorkLog& log, const machine::MachineCon
   }
   std::optional<walk::TreePlan> given;
   const memory::Layout layout = walk::layout_of(log, config, given);
-  const machine::PacketList packets(log.width, log.height, config.packets);
+  const machine::PacketList packets = packets_of(log, config, options.packet_seed);
   const std::vector<std::uint32_t> rank = walk::node_ranks(log, config);
   sim::Engine engine;
   engine.reserve(std::size_t{config.all_nodes()} + config.clusters);

@@ -106,7 +106,8 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
                               const ReplayOptions& options) {
   std::optional<walk::TreePlan> plan = plan_of(log, config, options);
   const memory::Layout layout = walk::layout_of(log, config, plan);
-  const machine::PacketList all_packets(log.width, log.height, config.packets);
+  sim::ensure(options.packet_seed == 0 || options.sample == nullptr, "a sample has its own order of packets");
+  const machine::PacketList all_packets = packets_of(log, config, options.packet_seed);
   const machine::PacketList packets =
       options.sample == nullptr ? all_packets : all_packets.only(options.sample->chosen());
   const std::vector<std::uint32_t> rank = walk::node_ranks(log, config);

@@ -49,6 +49,13 @@ struct ClusterResult {
   std::vector<memory::DramStatistics> dram{};  ///< of each channel, if the memory is one of DRAM
 };
 
+/// The frame times of a machine whose packets are handed out in other orders.
+struct OrderNoise {
+  std::int64_t replays = 0;  ///< of other orders
+  sim::Ticks shortest = 0;   ///< of them and of the order that was asked for
+  sim::Ticks longest = 0;
+};
+
 /// A timed frame. All figures are integers; ratios are computed where they are printed.
 struct MachineResult {
   sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
@@ -72,6 +79,8 @@ struct MachineResult {
   bool leaf_records = true;  ///< whether the tree's leaves have node records
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction
+  /// Of further replays; empty unless somebody has made them (studies/helps/noise.h).
+  std::optional<OrderNoise> noise{};
 
   [[nodiscard]] cost::StepCounts steps() const;
   [[nodiscard]] cost::ReferenceCounts references() const;
@@ -98,6 +107,9 @@ struct ReplayOptions {
   /// scheme with a given tree, dynamic assignment, one context, and no second level of caches or counting of
   /// more than hits and misses (check_sampled).
   const walk::PacketSample* sample = nullptr;
+  /// Not 0: each 16 packets in a row are handed out in an order that is drawn from it, after those before
+  /// them. The frame is as much the machine's as that of the order that it asks for. Not with `sample`.
+  std::uint64_t packet_seed = 0;
   bool with_contexts = false;  ///< nodes that can hold several contexts and prefetch, even for one context;
                                ///< same result
   /// Planned visits of the last of several replays of one tree that is given, one after the other; null: none

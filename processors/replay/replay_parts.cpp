@@ -1,9 +1,31 @@
 #include "processors/replay/replay_parts.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "processors/node/memory_system.h"
 #include "processors/path/watched_memory.h"
+#include "sim/mix.h"
 
 namespace marti::processors::replay {
+
+machine::PacketList packets_of(const program::WorkLog& log, const machine::MachineConfig& config,
+                               std::uint64_t packet_seed) {
+  machine::PacketList packets(log.width, log.height, config.packets);
+  if (packet_seed == 0) {
+    return packets;
+  }
+  constexpr std::uint64_t in_a_row = 16;
+  std::vector<std::uint64_t> order(packets.size());
+  std::iota(order.begin(), order.end(), std::uint64_t{0});
+  const auto drawn = [packet_seed](std::uint64_t packet) { return sim::mix(sim::mix(packet_seed) + packet); };
+  for (std::uint64_t first = 0; first < order.size(); first += in_a_row) {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(order.size(), first + in_a_row));
+    std::sort(begin, end, [&](std::uint64_t a, std::uint64_t b) { return drawn(a) < drawn(b); });
+  }
+  return packets.only(order);
+}
 
 Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& engine,
                              std::uint8_t memory_class, node::NodeArray& nodes, path::PathRecorder* path) {

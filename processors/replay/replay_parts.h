@@ -13,6 +13,10 @@
 
 namespace marti::processors::replay {
 
+/// The packets of a frame in the order in which they are handed out, by ReplayOptions::packet_seed.
+[[nodiscard]] machine::PacketList packets_of(const program::WorkLog& log,
+                                             const machine::MachineConfig& config, std::uint64_t packet_seed);
+
 /// Each cluster's shared memory.
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 

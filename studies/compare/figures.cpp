@@ -69,6 +69,7 @@ ComparedResult compared(const tables::RunJson& run, const std::string& name) {
   add(run, "figures.frame", "frame.", result.figures);
   add(run, "figures.machine", "", result.figures);
   result.scene_hash = run.text("scene.hash");
+  result.noise = run.optional_number("machine.what_helps.noise.band", 0.0, 1e18);
   result.helps = run.text("machine.what_helps.sentence");
   return result;
 }

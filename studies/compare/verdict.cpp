@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -93,6 +94,18 @@ std::string why(const ComparedPair& pair, std::int64_t change) {
                      change > 0 ? "more" : "less", sim::listed(parts));
 }
 
+// Whether the difference is less than another order of packets makes, where that is known of either result.
+std::string noise_sentence(const ComparedPair& pair, std::int64_t a, std::int64_t b) {
+  const double band = std::max(pair.a.noise.value_or(0.0), pair.b.noise.value_or(0.0));
+  const double difference = std::abs(static_cast<double>(b) / static_cast<double>(a) - 1.0);
+  if (a == b || difference > band) {
+    return {};
+  }
+  return fmt::format(
+      "That is no more than another order of packets does, {}: it does not say which machine is faster.",
+      tables::percent(band));
+}
+
 std::string misses_sentence(const ComparedPair& pair) {
   const std::optional<double> a = figure(pair.a, "misses");
   const std::optional<double> b = figure(pair.b, "misses");
@@ -156,6 +169,7 @@ std::vector<std::string> verdict_of(const ComparedPair& pair) {
         tables::seconds(*b)));
   } else {
     say(speed_text(*a, *b) + ".");
+    say(noise_sentence(pair, *a, *b));
     say(*a == *b ? std::string() : why(pair, *b - *a));
     say(misses_sentence(pair));
     say(settings.empty() ? "No setting differs." : "What differs: " + settings_sentence(settings) + ".");

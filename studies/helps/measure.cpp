@@ -20,6 +20,9 @@ constexpr std::size_t most_in_pairs = 4;
 // So many replays are begun together, on any number of cores. Which steps come next depends on them.
 constexpr std::size_t begun_together = 4;
 
+// The noise is measured with this part of the budget, beside it.
+constexpr Work part_for_noise = 10;
+
 // What the steps of a part have saved, by what was expected of them, tells of its other steps; within these
 // bounds, because one bad guess must not rule out a part.
 constexpr double least_trust = 0.25;
@@ -66,6 +69,8 @@ class Measurement {
       take_helps();
       return std::move(what_);
     }
+    what_.noise =
+        measure_noise(shared_, machine_, result_, limited_ ? budget_ / part_for_noise : unlimited_work);
     measure_steps();
     std::ranges::stable_sort(cases_,
                              [&](const Case& a, const Case& b) { return worth(a.help) > worth(b.help); });
@@ -120,6 +125,9 @@ class Measurement {
       measured.saved = measured.most_saved = 0.0;
     } else if (resource.same_work) {
       measured.most_saved = saved_of(result_.end, least_time(machine_, result_, change->machine));
+    }
+    if (measured.keys.size() == 1 && measured.keys.front().key.ends_with(".clock")) {
+      measured.in_proportion = 1.0 - 1.0 / resource.factor;
     }
     if (prices_) {
       measured.price = keys::cost_of(*prices_, change->machine) - keys::cost_of(*prices_, machine_);

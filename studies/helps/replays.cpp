@@ -26,11 +26,12 @@ MachineConfig without_counting(const MachineConfig& machine) {
   return plain;
 }
 
-Replayed replay_one(const SharedLog& shared, const MachineConfig& machine) {
+Replayed replay_one(const SharedLog& shared, const MachineConfig& machine, std::uint64_t packet_seed) {
   sim::WorkMeter packets(shared.meter);
   processors::replay::ReplayOptions options = shared.options;
   options.stripped = stripped_for(shared, machine);
   options.meter = &packets;
+  options.packet_seed = packet_seed;
   try {
     const processors::replay::MachineResult result =
         processors::replay::replay(shared.log, without_counting(machine), options);
@@ -59,7 +60,7 @@ const StrippedLog* stripped_for(const SharedLog& shared, const MachineConfig& ma
 }
 
 std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const MachineConfig* const> machines,
-                                 std::uint64_t most_bytes) {
+                                 std::uint64_t most_bytes, std::span<const std::uint64_t> packet_seeds) {
   const auto cores = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
   const std::uint64_t at_a_time =
       std::clamp<std::uint64_t>(shared.memory.left() / std::max<std::uint64_t>(1, most_bytes), 1, cores);
@@ -69,7 +70,7 @@ std::vector<Replayed> replay_all(const SharedLog& shared, std::span<const Machin
     tbb::parallel_for(
         std::size_t{0}, machines.size(),
         [&](std::size_t i) {
-          replayed[i] = replay_one(shared, *machines[i]);
+          replayed[i] = replay_one(shared, *machines[i], packet_seeds.empty() ? 0 : packet_seeds[i]);
           count_step(shared.meter);
         },
         tbb::simple_partitioner());

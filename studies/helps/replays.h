@@ -37,10 +37,11 @@ struct Replayed {
   Work work = 0;
 };
 
-/// Replays each machine, none of which takes more than `most_bytes`. As many are replayed at a time as there
+/// Replays each machine, none of which takes more than `most_bytes`, with the ReplayOptions::packet_seed of
+/// its place in `packet_seeds`; without these, as it is. As many are replayed at a time as there
 /// are cores and memory for; results do not depend on it. Throws sim::Stopped.
 [[nodiscard]] std::vector<Replayed> replay_all(
     const SharedLog& shared, std::span<const processors::machine::MachineConfig* const> machines,
-    std::uint64_t most_bytes);
+    std::uint64_t most_bytes, std::span<const std::uint64_t> packet_seeds = {});
 
 }  // namespace marti::studies::helps

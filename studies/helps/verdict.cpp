@@ -99,6 +99,23 @@ bool ties_with(const Help& first, const Help& help) {
   return price(first) == price(help) && saved(first) - saved(help) <= tie;
 }
 
+bool within_noise(const WhatHelps& what, const MeasuredChange& change) {
+  return what.noise && change.saved && *change.saved < band_of(*what.noise, what.end);
+}
+
+std::string doubt_text(const WhatHelps& what, const MeasuredChange& change) {
+  if (within_noise(what, change)) {
+    return fmt::format(" (no more than another order of packets, {:.2f} %)",
+                       100.0 * band_of(*what.noise, what.end));
+  }
+  constexpr double rounding = 0.0005;
+  if (change.in_proportion && change.saved && *change.saved > *change.in_proportion + rounding) {
+    return fmt::format(" (more than the clock's {}: the rest is the packets' order)",
+                       percent(*change.in_proportion));
+  }
+  return {};
+}
+
 std::optional<double> gain_of(const WhatHelps& what, const MeasuredChange& change) {
   return change.end && *change.end > 0
              ? std::optional(static_cast<double>(what.end) / static_cast<double>(*change.end) - 1.0)
@@ -156,7 +173,7 @@ std::string verdict(const WhatHelps& what, const processors::machine::MachineCon
   }
   const std::vector<const Help*> helps = best_helps(what);
   if (!helps.empty()) {
-    return fmt::format("{}{}; {}{}", gain_text(*helps[0]), ties(helps),
+    return fmt::format("{}{}{}; {}{}", gain_text(*helps[0]), doubt_text(what, *helps[0]->step), ties(helps),
                        why(*helps[0], machine, result, counts), tried(what));
   }
   if (what.pair) {

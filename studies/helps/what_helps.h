@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "studies/helps/change.h"
+#include "studies/helps/noise.h"
 #include "studies/helps/replays.h"
 #include "studies/helps/resources.h"
 #include "studies/keys/price_keys.h"
@@ -44,7 +45,10 @@ struct MeasuredChange {
   std::optional<sim::Ticks> end{};  ///< only of a change that was measured
   std::optional<double> saved{};    ///< share of the frame time that is saved; negative: the frame is longer
   double most_saved = 1.0;          ///< by the nodes' own work; no replay could give more
-  std::optional<double> price{};    ///< by which the machine's price rises; std::nullopt: no prices are given
+  /// What a faster clock saves of all the time, which is no less than of a part of it; std::nullopt: of what
+  /// is no clock.
+  std::optional<double> in_proportion{};
+  std::optional<double> price{};  ///< by which the machine's price rises; std::nullopt: no prices are given
 };
 
 /// One resource (studies/helps/resources.h).
@@ -65,6 +69,8 @@ struct HelpPair {
 struct WhatHelps {
   sim::Ticks end = 0;    ///< frame time of the unchanged machine
   bool measured = true;  ///< false: the budget is too small for a single replay
+  /// Of other orders of packets, within a tenth of the budget; empty: not measured.
+  std::optional<processors::replay::OrderNoise> noise;
   /// Those worth most first: by the share of the frame that the step saves. With prices, behind the steps
   /// that raise no price, the others by that share for each unit of the price. Behind them those whose step
   /// was not replayed or does not help.
@@ -79,6 +85,12 @@ struct WhatHelps {
                                    const processors::machine::MachineConfig& machine,
                                    const processors::replay::MachineResult& result, const SharedLog& shared,
                                    Work budget = unlimited_work);
+
+/// Whether a step saves less than another order of packets may; false where that is unknown.
+[[nodiscard]] bool within_noise(const WhatHelps& what, const MeasuredChange& change);
+/// What makes a step's saving doubtful, in brackets and after a space: that another order of packets does as
+/// much, or that it is more than a clock can save by itself. Empty: nothing.
+[[nodiscard]] std::string doubt_text(const WhatHelps& what, const MeasuredChange& change);
 
 /// How much faster the machine gets: the frame time before, divided by that after, minus 1. std::nullopt for
 /// a change that was not replayed, or whose frame takes no time.

@@ -54,6 +54,7 @@ Json change_json(const helps::WhatHelps& what, const std::optional<helps::Measur
           {"saved", optional_json(change->saved)},
           {"gain", optional_json(helps::gain_of(what, *change))},
           {"most_saved", change->most_saved},
+          {"within_noise", what.noise ? Json(helps::within_noise(what, *change)) : Json(nullptr)},
           {"price", optional_json(change->price)}};
 }
 
@@ -75,7 +76,18 @@ nlohmann::ordered_json helps_json(const run::RunResult& r) {
             {"second", what.pair->second},
             {"step", change_json(what, what.pair->step)}};
   }
-  return {{"measured", what.measured}, {"sentence", what.sentence}, {"pair", pair}, {"resources", resources}};
+  Json noise = nullptr;
+  if (what.noise) {
+    noise = {{"replays", what.noise->replays},
+             {"shortest_ps", what.noise->shortest},
+             {"longest_ps", what.noise->longest},
+             {"band", helps::band_of(*what.noise, what.end)}};
+  }
+  return {{"measured", what.measured},
+          {"sentence", what.sentence},
+          {"noise", noise},
+          {"pair", pair},
+          {"resources", resources}};
 }
 
 std::string helps_lines(const run::RunResult& r) {
@@ -92,9 +104,16 @@ std::string helps_lines(const run::RunResult& r) {
   const char* label = "then";
   for (const helps::Help* const help : helps) {
     if (!helps::ties_with(*helps[0], *help)) {
-      fmt::format_to(out, "  {:<12}{}\n", label, helps::gain_text(*help));
+      fmt::format_to(out, "  {:<12}{}{}\n", label, helps::gain_text(*help),
+                     helps::doubt_text(what, *help->step));
       label = "";
     }
+  }
+  if (what.noise || r.timed.packets > 1) {
+    fmt::format_to(out, "  {:<12}{}\n", "noise",
+                   what.noise ? helps::noise_text(*what.noise, what.end)
+                              : "of other orders of packets not measured, within a tenth of the run's work; "
+                                "--what-helps measures it");
   }
   label = "not tried";
   const helps::Unreplayed left = helps::unreplayed(what);

@@ -95,16 +95,18 @@ Advice measure(const SweepPlan& plan, const SweepMachine& machine, const process
   options.stripped = shared.stripped.get();
   const processors::replay::MachineResult timed = processors::replay::replay(log, described, options);
   const helps::WhatHelps what = helps::what_helps(config, plan.prices, described, timed, shared, budget);
+  const std::string sentence =
+      what.noise ? what.sentence + "; " + helps::noise_text(*what.noise, what.end) : what.sentence;
   const std::vector<const helps::Help*> best = helps::best_helps(what);
   const helps::MeasuredChange* const step = !best.empty() ? &*best.front()->step
                                             : what.pair   ? &what.pair->step
                                                           : nullptr;
   if (step == nullptr) {
-    return {what.sentence, {}, {}};
+    return {sentence, {}, {}};
   }
   const std::vector<std::string> settings =
       sim::mapped(step->keys, [](const helps::KeyChange& key) { return key.key + "=" + key.to; });
-  return {what.sentence, sim::joined(settings, "; "), step->saved};
+  return {sentence, sim::joined(settings, "; "), step->saved};
 }
 
 }  // namespace

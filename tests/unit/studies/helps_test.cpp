@@ -7,7 +7,9 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <set>
 
+#include "processors/replay/replay_parts.h"
 #include "studies/figures/counted_figures.h"
 #include "studies/helps/resources.h"
 #include "studies/helps/verdict.h"
@@ -153,6 +155,81 @@ TEST(WhatHelps, KeepsItsPromisesOnMachinesOfEveryKind) {
                           some * replay_work(one.result, nullptr)));
     }
   }
+}
+
+// The noise is that of replays whose packets change places within 16 in a row.
+TEST(Noise, IsTheSpreadOfOtherOrders) {
+  for (std::size_t seed = 0; seed < makers.size() * 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    test::Random random(seed);
+    test::TimedCase made = makers[seed % makers.size()](random);
+    const MachineResult result = processors::replay::replay(made.log, made.machine);
+    const SharedLog shared{made.log, nullptr, {}, {}};
+    const Work one = std::max<Work>(1, replay_work(result, nullptr));
+    const std::optional<processors::replay::OrderNoise> noise =
+        measure_noise(shared, made.machine, result, unlimited_work);
+    ASSERT_EQ(noise.has_value(), result.end > 0 && result.packets > 1);
+    EXPECT_FALSE(measure_noise(shared, made.machine, result, 2 * one - 1));
+    if (!noise) {
+      continue;
+    }
+    sim::Ticks shortest = result.end;
+    sim::Ticks longest = result.end;
+    for (std::uint64_t order = 1; order <= noise_orders; ++order) {
+      processors::replay::ReplayOptions options;
+      options.packet_seed = order;
+      const sim::Ticks end = processors::replay::replay(made.log, made.machine, options).end;
+      shortest = std::min(shortest, end);
+      longest = std::max(longest, end);
+    }
+    EXPECT_EQ(noise->replays, static_cast<std::int64_t>(noise_orders));
+    EXPECT_EQ(noise->shortest, shortest);
+    EXPECT_EQ(noise->longest, longest);
+    EXPECT_EQ(measure_noise(shared, made.machine, result, 3 * one)->replays, 3);
+  }
+}
+
+TEST(Noise, OrdersHandOutEachPacketOnceNearItsPlace) {
+  processors::program::WorkLog log;
+  log.width = 70;
+  log.height = 9;
+  MachineConfig machine;
+  machine.packets = {2, 3, processors::machine::PacketOrder::hilbert};
+  const auto usual = processors::replay::packets_of(log, machine, 0);
+  std::set<std::vector<std::uint32_t>> orders;
+  for (std::uint64_t seed = 1; seed <= noise_orders; ++seed) {
+    const auto other = processors::replay::packets_of(log, machine, seed);
+    ASSERT_EQ(other.size(), usual.size());
+    std::vector<std::uint32_t> order;
+    for (std::uint64_t first = 0; first < usual.size(); first += 16) {
+      std::set<std::pair<std::uint32_t, std::uint32_t>> wanted;
+      std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+      for (std::uint64_t i = first; i < std::min(usual.size(), first + 16); ++i) {
+        wanted.emplace(usual[i].x0, usual[i].y0);
+        found.emplace(other[i].x0, other[i].y0);
+        order.push_back(other[i].x0 + other[i].y0 * log.width);
+      }
+      EXPECT_EQ(found, wanted);
+    }
+    orders.insert(order);
+  }
+  EXPECT_EQ(orders.size(), noise_orders);
+}
+
+TEST(Noise, MakesSavingsDoubtful) {
+  WhatHelps what;
+  what.end = 1000;
+  MeasuredChange step;
+  step.saved = 0.019;
+  EXPECT_FALSE(within_noise(what, step));
+  EXPECT_EQ(doubt_text(what, step), "");
+  what.noise = {5, 990, 1010};
+  EXPECT_TRUE(within_noise(what, step));
+  EXPECT_EQ(doubt_text(what, step), " (no more than another order of packets, 2.00 %)");
+  step.saved = 0.109;
+  EXPECT_EQ(doubt_text(what, step), "");
+  step.in_proportion = 1.0 - 1.0 / 1.1;
+  EXPECT_EQ(doubt_text(what, step), " (more than the clock's 9.1 %: the rest is the packets' order)");
 }
 
 TEST(WhatHelps, IsTheSameWithOneThread) {
