@@ -49,13 +49,6 @@ struct ClusterResult {
   std::vector<memory::DramStatistics> dram{};  ///< of each channel, if the memory is one of DRAM
 };
 
-/// The frame times of a machine whose packets are handed out in other orders.
-struct OrderNoise {
-  std::int64_t replays = 0;  ///< of other orders
-  sim::Ticks shortest = 0;   ///< of them and of the order that was asked for
-  sim::Ticks longest = 0;
-};
-
 /// A timed frame. All figures are integers; ratios are computed where they are printed.
 struct MachineResult {
   sim::Ticks end = 0;  ///< when the last node and the last posted write are done: the frame time
@@ -79,8 +72,6 @@ struct MachineResult {
   bool leaf_records = true;  ///< whether the tree's leaves have node records
   std::size_t host_bytes_per_node = 0;
   sim::Ticks unloaded_miss = 0;  ///< time of a miss that meets no other transaction
-  /// Of further replays; empty unless somebody has made them (studies/helps/noise.h).
-  std::optional<OrderNoise> noise{};
 
   [[nodiscard]] cost::StepCounts steps() const;
   [[nodiscard]] cost::ReferenceCounts references() const;

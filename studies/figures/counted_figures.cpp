@@ -150,7 +150,6 @@ void add_all(FigureParts& parts, const MachineConfig& machine, const MachineResu
   add_build_figures(parts, result);
   add_cache_figures(parts, result, totals);
   add_asked_figures(parts, machine, result);
-  add_noise_figures(parts, result);
   parts.add_all("energy_", "where [energy] is on", result.energy);
 }
 

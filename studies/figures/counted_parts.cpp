@@ -76,19 +76,6 @@ void add_cache_figures(FigureParts& parts, const MachineResult& r, const Machine
   parts.add_all("contexts_", "all nodes", only(!r.contexts.nodes.empty(), r.contexts.counts()));
 }
 
-void add_noise_figures(FigureParts& parts, const MachineResult& r) {
-  const bool there = r.noise.has_value();
-  parts.add("noise_replays",
-            {"1", "replays with packets in another order, by which the noise of the frame time is known",
-             Merge::one, Better::program},
-            there ? std::optional(r.noise->replays) : std::nullopt);
-  parts.add("noise_shortest",
-            {"ps", "the shortest frame of these and of its own", Merge::one, Better::program},
-            there ? std::optional(r.noise->shortest) : std::nullopt);
-  parts.add("noise_longest", {"ps", "the longest of these frames", Merge::one, Better::program},
-            there ? std::optional(r.noise->longest) : std::nullopt);
-}
-
 void add_asked_figures(FigureParts& parts, const MachineConfig& machine, const MachineResult& r) {
   const auto& classes = r.counts.miss_classes;
   for (std::size_t i = 0; i < memory::miss_classes; ++i) {

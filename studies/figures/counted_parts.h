@@ -23,8 +23,6 @@ void add_build_figures(FigureParts& parts, const processors::replay::MachineResu
 /// Of the second level, of SIMT nodes, of contexts and prefetching.
 void add_cache_figures(FigureParts& parts, const processors::replay::MachineResult& result,
                        const MachineTotals& totals);
-/// Of other orders of the packets.
-void add_noise_figures(FigureParts& parts, const processors::replay::MachineResult& result);
 /// What is counted only when it is asked for.
 void add_asked_figures(FigureParts& parts, const processors::machine::MachineConfig& machine,
                        const processors::replay::MachineResult& result);

@@ -71,8 +71,6 @@ void add_speed(std::vector<FigureEntry>& all) {
       Better::lower,
       (own("nodes") * own("end") - base("nodes") * base("end")) /
           (base("end") * (own("nodes") - base("nodes"))));
-  add("noise_band", "how far frames differ by the order of packets alone; less than that is no difference",
-      Better::program, (own("noise_longest") - own("noise_shortest")) / own("end"), "fraction");
   add("times_faster", "how many times as fast as the machine that all are compared with", Better::higher,
       Formula("end", Whose::compared) / own("end"));
   constexpr std::array<std::string_view, loss_names.size()> lost_to = {

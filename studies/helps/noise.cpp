@@ -6,8 +6,6 @@
 
 namespace marti::studies::helps {
 
-using processors::replay::OrderNoise;
-
 std::optional<OrderNoise> measure_noise(const SharedLog& shared,
                                         const processors::machine::MachineConfig& machine,
                                         const processors::replay::MachineResult& result, Work budget) {

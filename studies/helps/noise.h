@@ -8,6 +8,13 @@
 
 namespace marti::studies::helps {
 
+/// The frame times of a machine whose packets are handed out in other orders.
+struct OrderNoise {
+  std::int64_t replays = 0;  ///< of other orders
+  sim::Ticks shortest = 0;   ///< of them and of the order that was asked for
+  sim::Ticks longest = 0;
+};
+
 /// So many other orders are replayed, where there is work for them; two at least.
 inline constexpr std::size_t noise_orders = 5;
 
@@ -15,15 +22,16 @@ inline constexpr std::size_t noise_orders = 5;
 /// seeds 1, 2, ... (ReplayOptions::packet_seed). The replays take `budget` at most, by what that of `result`
 /// took. std::nullopt: there is no work or memory for two, a frame takes no time, or the frame has one
 /// packet.
-[[nodiscard]] std::optional<processors::replay::OrderNoise> measure_noise(
-    const SharedLog& shared, const processors::machine::MachineConfig& machine,
-    const processors::replay::MachineResult& result, Work budget);
+[[nodiscard]] std::optional<OrderNoise> measure_noise(const SharedLog& shared,
+                                                      const processors::machine::MachineConfig& machine,
+                                                      const processors::replay::MachineResult& result,
+                                                      Work budget);
 
 /// The band of the noise: the longest less the shortest of these frames, as a share of the frame time `end`,
 /// which must not be 0. Another order makes a difference of that size by itself.
-[[nodiscard]] double band_of(const processors::replay::OrderNoise& noise, sim::Ticks end);
+[[nodiscard]] double band_of(const OrderNoise& noise, sim::Ticks end);
 
 /// "another order of packets changes the frame by up to 1.3 % (5 replays)".
-[[nodiscard]] std::string noise_text(const processors::replay::OrderNoise& noise, sim::Ticks end);
+[[nodiscard]] std::string noise_text(const OrderNoise& noise, sim::Ticks end);
 
 }  // namespace marti::studies::helps

@@ -70,7 +70,7 @@ struct WhatHelps {
   sim::Ticks end = 0;    ///< frame time of the unchanged machine
   bool measured = true;  ///< false: the budget is too small for a single replay
   /// Of other orders of packets, within a tenth of the budget; empty: not measured.
-  std::optional<processors::replay::OrderNoise> noise;
+  std::optional<OrderNoise> noise;
   /// Those worth most first: by the share of the frame that the step saves. With prices, behind the steps
   /// that raise no price, the others by that share for each unit of the price. Behind them those whose step
   /// was not replayed or does not help.

@@ -297,8 +297,6 @@ RunResult run(sim::Config& config, RunOptions options) {
     std::shared_ptr<const processors::walk::StrippedLog> stripped = time_frame(record, options, result);
     if (options.what_helps != helps::Measuring::none) {
       result.helps = measure_help(config, options, std::move(stripped), result);
-      result.timed.noise = result.helps->noise;
-      result.counts = figures::counts_of(result.machine, result.timed, result.totals);
     }
   });
   return result;

@@ -166,8 +166,7 @@ TEST(Noise, IsTheSpreadOfOtherOrders) {
     const MachineResult result = processors::replay::replay(made.log, made.machine);
     const SharedLog shared{made.log, nullptr, {}, {}};
     const Work one = std::max<Work>(1, replay_work(result, nullptr));
-    const std::optional<processors::replay::OrderNoise> noise =
-        measure_noise(shared, made.machine, result, unlimited_work);
+    const std::optional<OrderNoise> noise = measure_noise(shared, made.machine, result, unlimited_work);
     ASSERT_EQ(noise.has_value(), result.end > 0 && result.packets > 1);
     EXPECT_FALSE(measure_noise(shared, made.machine, result, 2 * one - 1));
     if (!noise) {
