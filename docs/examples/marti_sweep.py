@@ -32,7 +32,7 @@ import signal
 import sqlite3
 import sys
 
-FORMAT = 4
+FORMAT = 5
 POINT_COLUMNS = ("ordinal", "machine", "base", "cost")
 
 

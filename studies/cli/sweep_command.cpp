@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "studies/progress/progress_line.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/share.h"
+#include "studies/sweep/store/answers.h"
 #include "studies/sweep/store/axis_effects.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/sweep.h"
@@ -91,6 +93,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     }
   }
   const sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
+  sweep::check_question(plan.question, plan.axes);
   if (arguments.plan_only) {
     if (!options.share || options.share->number == 1) {
       print(sweep::describe(plan, sweep::look_ahead(plan, options)));
@@ -112,15 +115,22 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     }
     return;
   }
+  const sweep::Answers answers = sweep::answers_of(*report.reader);
   if (arguments.json) {
-    print(tables::json_of(arguments.best.empty()
-                              ? sweep::points_table(*report.reader)
-                              : sweep::best_points(*report.reader, arguments.best, arguments.budget).front));
+    nlohmann::ordered_json json = tables::table_json(
+        arguments.best.empty() ? sweep::points_table(*report.reader)
+                               : sweep::best_points(*report.reader, arguments.best, arguments.budget).front);
+    if (!answers.asks.empty()) {
+      json["question"] = sweep::answers_json(answers);
+    }
+    print(tables::json_text(json));
     return;
   }
-  std::string text = said(report) + sweep::fastest_text(*report.reader) + said_of_axes(*report.reader);
+  std::string text = said(report) + sweep::answer_text(answers) + sweep::fastest_text(*report.reader) +
+                     said_of_axes(*report.reader);
   text += "wrote         " + report.store.string() + "\n";
   text += "wrote         " + report.points.string() + "\n";
+  text += sweep::tables_text(answers);
   if (!arguments.best.empty()) {
     text += note_of_frames(plan);
     text += "\n" + sweep::best_points(*report.reader, arguments.best, arguments.budget).text;

@@ -13,8 +13,9 @@ void declare_sections_of_other_commands(sim::Schema& schema) {
   for (const std::string_view study : {"paper", "schemes", "error", "stability"}) {
     schema.elsewhere(study, "marti study " + std::string(study));
   }
-  schema.elsewhere("sweep", "marti sweep");
-  schema.elsewhere("prices", "marti sweep");
+  for (const std::string_view section : {"sweep", "question", "prices"}) {
+    schema.elsewhere(section, "marti sweep");
+  }
   if (schema.is_section("record")) {
     return;  // it is the schema of `marti run`, which has all sections below
   }

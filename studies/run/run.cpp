@@ -48,6 +48,10 @@ void declare_sweep_sections(sim::Schema& schema) {
       "sweep",
       "only for `marti sweep`, which times many machines: [sweep.axes], [[sweep.zip]], [sweep.points.NAME], "
       "[sweep.base] and [sweep.compare] say which (docs/sweep.md)");
+  schema.free_section("question",
+                      "only for `marti sweep`: what its machines are timed for, and SQL queries over its "
+                      "points that answer it "
+                      "(docs/sweep.md)");
   schema.free_section("prices",
                       "what a machine costs, in units of your own: for `marti sweep`, and for what `marti "
                       "run` says would help");

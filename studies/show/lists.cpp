@@ -7,7 +7,9 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sim/error.h"
@@ -44,12 +46,36 @@ void list_text(std::string_view title, std::span<const figures::FigureEntry> fig
   }
 }
 
+// What a figure has in common with others that are of other rays: "for shadow rays: transfers" and "for
+// camera rays: transfers" are one line.
+std::string common_description(const figures::FigureEntry& figure) {
+  const std::size_t colon = figure.description.find(": ");
+  return figure.description.starts_with("for ") && colon != std::string::npos
+             ? "for these rays" + figure.description.substr(colon)
+             : figure.description;
+}
+
+// Figures with the same meaning of other parts, which their names tell, stand in one line.
 void list_counted(std::string_view title, std::span<const figures::FigureEntry> figures, std::string& text) {
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "\n## {}\n\n| figure | unit | merge | better | what |\n|---|---|---|---|---|\n", title);
+  struct Row {
+    std::string names;
+    std::string what;  // all but the names
+  };
+  std::vector<Row> rows;
   for (const figures::FigureEntry& figure : figures) {
-    fmt::format_to(out, "| `{}` | {} | {} | {} | {} |\n", figure.name, figure.unit, merge_of(figure),
-                   better_of(figure), figure.description);
+    std::string what = fmt::format("{} | {} | {} | {}", figure.unit, merge_of(figure), better_of(figure),
+                                   common_description(figure));
+    const auto known = std::ranges::find(rows, what, &Row::what);
+    if (known == rows.end()) {
+      rows.push_back({"`" + figure.name + "`", std::move(what)});
+    } else {
+      known->names += ", `" + figure.name + "`";
+    }
+  }
+  for (const Row& row : rows) {
+    fmt::format_to(out, "| {} | {} |\n", row.names, row.what);
   }
 }
 

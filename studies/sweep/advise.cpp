@@ -95,18 +95,18 @@ Advice measure(const SweepPlan& plan, const SweepMachine& machine, const process
   options.stripped = shared.stripped.get();
   const processors::replay::MachineResult timed = processors::replay::replay(log, described, options);
   const helps::WhatHelps what = helps::what_helps(config, plan.prices, described, timed, shared, budget);
-  const std::string sentence =
-      what.noise ? what.sentence + "; " + helps::noise_text(*what.noise, what.end) : what.sentence;
+  const std::optional<double> noise =
+      what.noise ? std::optional(helps::band_of(*what.noise, what.end)) : std::nullopt;
   const std::vector<const helps::Help*> best = helps::best_helps(what);
   const helps::MeasuredChange* const step = !best.empty() ? &*best.front()->step
                                             : what.pair   ? &what.pair->step
                                                           : nullptr;
   if (step == nullptr) {
-    return {sentence, {}, {}};
+    return {what.sentence, {}, {}, noise};
   }
   const std::vector<std::string> settings =
       sim::mapped(step->keys, [](const helps::KeyChange& key) { return key.key + "=" + key.to; });
-  return {sentence, sim::joined(settings, "; "), step->saved};
+  return {what.sentence, sim::joined(settings, "; "), step->saved, noise};
 }
 
 }  // namespace
@@ -139,8 +139,10 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
       continue;
     }
     if (alone[index] > of_each) {  // the machine itself is replayed once more, too
-      save(index,
-           {"not measured: replays of this machine take long; `marti run --what-helps` measures it", {}, {}});
+      save(index, {"not measured: replays of this machine take long; `marti run --what-helps` measures it",
+                   {},
+                   {},
+                   {}});
       continue;
     }
     const SweepMachine& machine = plan.machines[index];

@@ -134,6 +134,7 @@ SweepPlan part_of(const SweepPlan& plan, Share share, const std::function<bool(c
   SweepPlan part;
   part.file = plan.file;
   part.axes = plan.axes;
+  part.question = plan.question;
   std::optional<std::size_t> frame;  // of the plan, that the part had last
   for (const std::size_t machine : mine) {
     if (frame != plan.machines[machine].frame) {

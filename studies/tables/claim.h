@@ -1,4 +1,4 @@
-// A statement of a paper beside what a study measured.
+// A statement of a paper, or of anybody, beside what was measured.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ enum class Verdict : std::uint8_t { agrees, in_part, differs, not_measured };
 
 struct Claim {
   std::string subject;
-  std::string paper;  ///< what it says
-  std::string here;   ///< what was measured
+  std::string says;  ///< the statement
+  std::string here;  ///< what was measured
   Verdict verdict = Verdict::not_measured;
 };
 

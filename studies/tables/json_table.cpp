@@ -59,13 +59,13 @@ Json rows_json(const Table& table) {
   return rows;
 }
 
-std::string json_of(const Table& table) {
+Json table_json(const Table& table) {
   const Json columns = sim::mapped(table.columns(), [&](const Column& column) {
     return Json{{"name", column.name}, {"unit", column.unit}, {"description", column.description}};
   });
-  const Json whole = {
-      {"name", table.name()}, {"title", table.title()}, {"columns", columns}, {"rows", rows_json(table)}};
-  return json_text(whole);
+  return {{"name", table.name()}, {"title", table.title()}, {"columns", columns}, {"rows", rows_json(table)}};
 }
+
+std::string json_of(const Table& table) { return json_text(table_json(table)); }
 
 }  // namespace marti::studies::tables

@@ -23,7 +23,10 @@ namespace marti::studies::tables {
 /// null.
 [[nodiscard]] nlohmann::ordered_json rows_json(const Table& table);
 
-/// {"name", "title", "columns": [{"name", "unit", "description"}], "rows": ...}, as json_text().
+/// {"name", "title", "columns": [{"name", "unit", "description"}], "rows": ...}.
+[[nodiscard]] nlohmann::ordered_json table_json(const Table& table);
+
+/// table_json() as json_text().
 [[nodiscard]] std::string json_of(const Table& table);
 
 }  // namespace marti::studies::tables

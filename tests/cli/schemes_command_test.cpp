@@ -20,7 +20,7 @@ const std::string small_schemes = shipped("schemes.toml") +
 TEST(SchemesCommand, WritesTablesAndChartsAndTheSameBytesAgain) {
   const TemporaryDirectory directory;
   expect_study("schemes " + small_schemes, directory.path(),
-               {"Speed-up over one node", "pipeline", "space", "The paper's statements"},
+               {"Speed-up over one node", "pipeline", "space", "Statements beside what was measured"},
                {"schemes.csv", "stages.csv", "cells.csv", "claims.csv", "schemes.vl.json",
                 "schemes_efficiency.vl.json", "stages.vl.json", "cells.vl.json", "results.sqlite"});
 }

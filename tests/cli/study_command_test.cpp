@@ -25,7 +25,7 @@ const std::string small_paper =
 TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
   const TemporaryDirectory directory;
   EXPECT_GE(expect_study("paper " + small_paper, directory.path(),
-                         {"Table 1", "Figure 3", "The paper's statements", "results.sqlite"}, {}),
+                         {"Table 1", "Figure 3", "Statements beside what was measured", "results.sqlite"}, {}),
             12);
 }
 

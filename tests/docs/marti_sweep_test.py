@@ -140,7 +140,7 @@ class TheModule(unittest.TestCase):
         with sqlite3.connect(store) as database:
             database.execute("UPDATE store SET value = '99' WHERE what = 'format'")
         database.close()
-        with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads format 4"):
+        with self.assertRaisesRegex(marti_sweep.SweepError, "is of format 99, but this reads format 5"):
             marti_sweep.load(store)
 
     def test_plots_a_line_for_each_value(self):

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "studies/sweep/store/answers.h"
 #include "studies/sweep/store/axis_effects.h"
 #include "studies/tables/table.h"
 
@@ -36,6 +37,7 @@ struct ReportPoint {
   std::map<std::string, double, std::less<>> figures;  ///< those that the point has
   std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
   std::string advice;                                  ///< what would help it, measured; may be empty
+  std::optional<double> noise;                         ///< of its frame time (sweep::Advice::noise)
   bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar,
   bool banks_are_queues = false;                       ///< and it is not held while a bank works
 
@@ -51,6 +53,7 @@ struct ReportPoints {
   std::size_t planned = 0;
   std::size_t frames = 1;      ///< that differ in their scene, rays or image: frames of different work
   bool priced = false;         ///< costs differ
+  sweep::Answers answers;      ///< to what the sweep asks
   sweep::AxisEffects effects;  ///< which axis changes the frame time most
   std::vector<std::pair<std::string, std::string>> settings;  ///< that all timed points share, by key
   std::vector<std::pair<std::string, std::string>> provenance;

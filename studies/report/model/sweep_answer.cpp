@@ -9,6 +9,7 @@
 
 #include "studies/figures/best_offer.h"
 #include "studies/report/model/answer_text.h"
+#include "studies/sweep/store/points_table.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
@@ -166,6 +167,16 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         "The sweep has {} different frames, which are not the same work: only the machines of the frame with "
         "the shortest time are compared here{}.",
         sweep.frames, frame_text(sweep, fastest.frame)));
+  }
+  if (fastest.noise) {
+    std::vector<double> times;
+    for (const ReportPoint& point : sweep.points) {
+      if (point.frame == fastest.frame) {
+        times.push_back(point.figure("end"));
+      }
+    }
+    answer.push_back(
+        "Noise: " + sweep::noise_text(*fastest.noise, sweep::within_noise(times, *fastest.noise)) + ".");
   }
   add_advice("What would help it, measured", fastest);
   if (chosen.knee != chosen.fastest) {

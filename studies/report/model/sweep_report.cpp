@@ -11,6 +11,8 @@
 #include "studies/report/model/explorer.h"
 #include "studies/report/model/report_points.h"
 #include "studies/report/model/sweep_answer.h"
+#include "studies/report/model/verdicts.h"
+#include "studies/tables/claim.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
@@ -208,6 +210,10 @@ std::optional<std::size_t> first_axis(const ReportPoints& sweep) {
   return sweep.axes.empty() ? std::nullopt : std::optional<std::size_t>(0);
 }
 
+void add_to(std::vector<std::string>& sentences, const std::vector<std::string>& more) {
+  sentences.insert(sentences.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget) {
@@ -217,11 +223,24 @@ ReportData sweep_report(const ReportPoints& sweep, std::optional<double> budget)
   report.kind = "sweep";
   report.title = "Sweep of " + tables::counted(sweep.points.size(), "machine");
   report.about = about_sweep(sweep);
-  report.answer = answer_of(sweep, chosen);
+  if (!sweep.answers.asks.empty()) {
+    report.title = sweep.answers.asks;
+  }
+  report.answer = sweep.answers.answer;
+  if (!sweep.answers.claims.empty()) {
+    add_to(report.answer, verdict_sentences(tables::claim_table(sweep.answers.claims)));
+  }
+  add_to(report.answer, answer_of(sweep, chosen));
   report.explorer = explorer_json(sweep, chosen, axis);
   add_live_charts(sweep, axis, report);
   if (!sweep.effects.axes.empty()) {
     report.charts.push_back(effects_chart(sweep.effects));
+  }
+  for (const tables::Table& table : sweep.answers.tables) {
+    report.tables.push_back({table, false});
+  }
+  if (!sweep.answers.claims.empty()) {
+    report.tables.push_back({tables::claim_table(sweep.answers.claims), false});
   }
   constexpr std::size_t few = 12;
   report.tables.push_back({front_table(sweep, chosen), chosen.front.size() > few});

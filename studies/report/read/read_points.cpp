@@ -265,9 +265,11 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
     }
   }
   sweep.frames = frames.count();
+  sweep.answers = sweep::answers_of(reader);
   const std::vector<sweep::AxisColumn> columns = sweep::order_axes(reader.axes(), values);
   sweep.effects = sweep::axis_effects(
       columns, sim::mapped(sweep.points, [](const ReportPoint& point) { return point.figure("end"); }));
+  sweep.effects.noise = reader.noise();
   for (const sweep::AxisColumn& column : columns) {
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
       sweep.points[i].place.push_back(column.index[i]);
@@ -285,6 +287,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
   for (ReportPoint& point : sweep.points) {
     if (const auto measured = advice.find(point.machine); measured != advice.end()) {
       point.advice = measured->second.sentence;
+      point.noise = measured->second.noise;
     }
   }
   sweep.provenance = {{"version of marti", sweep.version},

@@ -10,8 +10,8 @@
 
 #include "sim/error.h"
 #include "sim/files.h"
-#include "sim/joined.h"
 #include "studies/report/model/chart_library.h"
+#include "studies/report/model/verdicts.h"
 #include "studies/report/read/read_report.h"
 #include "studies/report/read/report_files.h"
 #include "studies/tables/cell_number.h"
@@ -150,39 +150,6 @@ void take_text(const fs::path& file, ReportData& report) {
   }
 }
 
-// What a study has found: how many of its claims (studies/tables/claim.h) or cases hold, then each that does
-// not hold, or not everywhere.
-void take_verdicts(const tables::Table& table, ReportData& report) {
-  const bool claims = table.name() == "claims";
-  const auto text = [&](std::size_t row, std::string_view column) {
-    const auto* found = std::get_if<std::string>(&table.at(row, column));
-    return found == nullptr ? std::string("?") : *found;
-  };
-  std::size_t holding = 0;
-  std::vector<std::string> not_measured;
-  std::vector<std::string> others;
-  for (std::size_t row = 0; row < table.rows().size(); ++row) {
-    const std::string verdict = text(row, "verdict");
-    const std::string subject = text(row, claims ? "subject" : "case");
-    if (verdict == "agrees" || verdict == "pass") {
-      ++holding;
-    } else if (verdict == "not measured") {
-      not_measured.push_back(subject);
-    } else {
-      others.push_back(fmt::format("{}: {} ({}).", subject, text(row, claims ? "here" : "figure"), verdict));
-    }
-  }
-  if (const std::size_t measured = holding + others.size(); measured > 0) {
-    report.answer.push_back(fmt::format("{} of {} {}{}", holding, measured,
-                                        claims ? "claims of the paper are reproduced" : "cases pass",
-                                        others.empty() ? "." : "; the others:"));
-  }
-  report.answer.insert(report.answer.end(), others.begin(), others.end());
-  if (!not_measured.empty()) {
-    report.answer.push_back("Not measured here: " + sim::joined(not_measured, "; ") + ".");
-  }
-}
-
 bool has_columns(const tables::Table& table, std::span<const std::string_view> names) {
   return std::ranges::all_of(names, [&](std::string_view name) {
     const auto columns = table.columns();
@@ -219,7 +186,8 @@ ReportData read_study_report(const fs::path& directory) {
     constexpr std::array<std::string_view, 3> of_cases = {"case", "figure", "verdict"};
     if ((name == "claims" && has_columns(table, of_claims)) ||
         (name == "stability" && has_columns(table, of_cases))) {
-      take_verdicts(table, report);
+      const std::vector<std::string> found = verdict_sentences(table);
+      report.answer.insert(report.answer.end(), found.begin(), found.end());
     }
     tables.push_back(std::move(table));
   }

@@ -31,6 +31,8 @@ bool is_printable(const sim::Key& key, double number) {
 
 }  // namespace
 
+bool is_axis(const std::string& name) { return key_of(name) != nullptr; }
+
 std::string axis_unit(const std::string& axis) {
   const sim::Key* const key = key_of(axis);
   return key == nullptr ? std::string() : sim::unit_of(*key);

@@ -7,6 +7,9 @@
 
 namespace marti::studies::sweep {
 
+/// Whether it is a key of the configuration.
+[[nodiscard]] bool is_axis(const std::string& name);
+
 /// The unit in which the values of an axis are numbers: "byte", "Hz", "ps", ...; empty for an axis of texts,
 /// and for "point".
 [[nodiscard]] std::string axis_unit(const std::string& axis);

@@ -64,6 +64,7 @@ class Planner {
   SweepPlan plan() {
     plan_.file = config_.name();
     plan_.prices = keys::read_given_prices(config_);
+    plan_.question = read_question(config_);
     name_axes();
     const std::vector<std::uint64_t> passing = filter();
     find_strides_of_bases();

@@ -11,6 +11,7 @@
 #include "sim/config.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_cost.h"
+#include "studies/sweep/plan/question.h"
 #include "studies/sweep/plan/shared_settings.h"
 
 namespace marti::studies::sweep {
@@ -70,6 +71,7 @@ struct SweepPlan {
   std::uint64_t filtered_out = 0;      ///< points that do not pass
   std::optional<std::size_t> compare;  ///< the machine that all are compared with
   std::optional<keys::Prices> prices;  ///< if any is given; they rank what would help
+  Question question;                   ///< of [question]
 
   std::vector<SweepDirection> directions;  ///< all are crossed, the last changes fastest
   std::vector<SkippedPoint> skipped;       ///< only with sweep.skip_invalid

@@ -10,6 +10,7 @@
 #include "sim/joined.h"
 #include "studies/sweep/plan/axis_text.h"
 #include "studies/tables/cell_number.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::sweep {
 
@@ -130,19 +131,29 @@ AxisEffects axis_effects(const SweepReader& reader) {
       times.push_back(time);
     }
   });
-  return axis_effects(order_axes(reader.axes(), values), times);
+  AxisEffects effects = axis_effects(order_axes(reader.axes(), values), times);
+  effects.noise = reader.noise();
+  return effects;
 }
 
 std::string effects_text(const AxisEffects& effects) {
   std::vector<std::string> axes;
+  std::size_t small = 0;
   for (const AxisEffect& axis : effects.axes) {
-    if (axes.size() < most_named) {
+    if (axis.ratio() <= 1.0 + effects.noise) {
+      ++small;
+    } else if (axes.size() < most_named) {
       axes.push_back(fmt::format("{} {:.2f} times", axis.axis, axis.ratio()));
     }
   }
   std::string text = sim::joined(axes, ", ");
-  if (effects.axes.size() > most_named) {
-    text += fmt::format(", {} more", effects.axes.size() - most_named);
+  if (effects.axes.size() - small > most_named) {
+    text += fmt::format(", {} more", effects.axes.size() - small - most_named);
+  }
+  if (small > 0) {
+    text += fmt::format("{}{} no more than another order of packets, {}", text.empty() ? "" : ", ",
+                        small == 1 ? "one axis" : fmt::format("{} axes", small),
+                        tables::figure_text(effects.noise, "fraction", "-"));
   }
   if (!effects.interactions.empty()) {
     const Interaction& largest = effects.interactions.front();

@@ -53,38 +53,11 @@ tables::ColumnType type_of(std::span<const Row> rows, std::size_t index) {
                                                       : first.value_or(tables::ColumnType::real);
 }
 
-// A figure without its type.
-tables::Column column_of(const std::string& name) {
-  static const std::map<std::string, std::pair<std::string, std::string>> own = {
-      {"cost", {"1", "price of the machine, by [prices]"}},
-      {"ordinal", {"1", "number of the point in the sweep, from 0"}},
-      {"machine", {"", "id of its machine in the store"}},
-      {"base", {"", "id of the machine that its speed-up is measured against"}},
-      {"point", {"", "name in [sweep.points]"}},
-      {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
-  tables::Column column = tables::real_column(name, axis_unit(name), "the key " + name);
-  const auto describe = [&](const std::string& unit, const std::string& description) {
-    column.unit = unit;
-    column.description = description;
-  };
-  if (const auto found = own.find(name); found != own.end()) {
-    describe(found->second.first, found->second.second);
-  }
-  for (const auto& figures : {figures::counted_figures(), figures::derived_figures()}) {
-    for (const figures::FigureEntry& figure : figures) {
-      if (figure.name == name) {
-        describe(figure.unit, figure.description);
-      }
-    }
-  }
-  return column;
-}
-
 tables::Table table_of(std::string name, std::string title, std::span<const std::string> names,
                        std::vector<Row> rows) {
   std::vector<tables::Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    columns.push_back(column_of(names[i]));
+    columns.push_back(point_column(names[i]));
     columns.back().type = is_boolean_axis(names[i]) ? tables::ColumnType::boolean : type_of(rows, i);
     if (columns.back().type == tables::ColumnType::text) {
       columns.back().unit.clear();  // its text holds the unit
@@ -102,47 +75,103 @@ tables::Table table_of(std::string name, std::string title, std::span<const std:
 
 }  // namespace
 
+tables::Column point_column(const std::string& name) {
+  static const std::map<std::string, std::pair<std::string, std::string>> own = {
+      {"cost", {"1", "price of the machine, by [prices]"}},
+      {"ordinal", {"1", "number of the point in the sweep, from 0"}},
+      {"machine", {"", "id of its machine in the store"}},
+      {"base", {"", "id of the machine that its speed-up is measured against"}},
+      {"point", {"", "name in [sweep.points]"}},
+      {"best", {"1", "1 for the best within the budget, 0 for the others"}}};
+  tables::Column column = is_axis(name) ? tables::real_column(name, axis_unit(name), "the key " + name)
+                                        : tables::real_column(name, "", "computed from the points");
+  const auto describe = [&](const std::string& unit, const std::string& description) {
+    column.unit = unit;
+    column.description = description;
+  };
+  if (const auto found = own.find(name); found != own.end()) {
+    describe(found->second.first, found->second.second);
+  }
+  for (const auto& figures : {figures::counted_figures(), figures::derived_figures()}) {
+    for (const figures::FigureEntry& figure : figures) {
+      if (figure.name == name) {
+        describe(figure.unit, figure.description);
+      }
+    }
+  }
+  return column;
+}
+
 tables::Table points_table(const SweepReader& reader) {
   const std::vector<std::string>& names = reader.figures();
   tables::Table table = table_of("points", "Points of the sweep", names, rows_of(reader, names));
   const std::map<std::int64_t, Advice> advice = reader.advice();
   const std::size_t machine = table.column("machine");
-  const std::array<tables::Column, 3> columns = {
+  const std::array<tables::Column, 4> columns = {
       {tables::text_column("advice", "what would help the machine most, measured for those that matter"),
        tables::text_column("advice_set", "the settings of that step, as for --set"),
-       tables::real_column("advice_saves", "fraction", "of the frame time that it saves")}};
+       tables::real_column("advice_saves", "fraction", "of the frame time that it saves"),
+       tables::real_column("advice_noise", "fraction",
+                           "of the frame time, by which frames with packets in other orders differ")}};
   table.add_columns(columns, [&](std::span<const tables::Cell> row) -> std::vector<tables::Cell> {
     const auto found = advice.find(std::get<std::int64_t>(row[machine]));
     if (found == advice.end()) {
       return std::vector<tables::Cell>(columns.size());
     }
-    const auto& [sentence, settings, saves] = found->second;
-    return {sentence, settings.empty() ? tables::Cell() : settings, saves};
+    const auto& [sentence, settings, saves, noise] = found->second;
+    return {sentence, settings.empty() ? tables::Cell() : settings, saves, noise};
   });
   return table;
+}
+
+std::size_t within_noise(std::span<const double> times, double noise) {
+  const double most = (1.0 + noise) * *std::ranges::min_element(times);
+  return static_cast<std::size_t>(std::ranges::count_if(times, [&](double time) { return time <= most; })) -
+         1;
+}
+
+std::string noise_text(double noise, std::size_t others) {
+  return fmt::format("another order of packets changes its frame by up to {}, and {} within that",
+                     tables::figure_text(noise, "fraction", "-"),
+                     others == 0 ? "no other point is"
+                     : others == 1
+                         ? "1 other point is"
+                         : tables::grouped(static_cast<std::int64_t>(others)) + " other points are");
 }
 
 std::string fastest_text(const SweepReader& reader) {
   const std::map<std::int64_t, Advice> advice = reader.advice();
   const std::vector<std::string>& axes = reader.axes();
   std::optional<std::pair<double, double>> least;  // of frame time and cost
+  const Advice* of_least = nullptr;
+  std::vector<double> times;
   std::string text;
   const std::vector<std::string> figures = {"end"};
   reader.for_each_point(figures, [&](const StoredPoint& point, std::span<const tables::Cell> cells) {
     const auto found = advice.find(point.machine);
     const std::optional<double> end = tables::number_of(cells[0]);
+    if (end) {
+      times.push_back(*end);
+    }
     if (found == advice.end() || !end || (least && *least <= std::pair(*end, point.cost))) {
       return;
     }
     least = {*end, point.cost};
+    of_least = &found->second;
     text = fmt::format("fastest       {} at a cost of {:g}", tables::figure_text(cells[0], "ps", "-"),
                        point.cost);
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
       text += (axis == 0 ? ": " : ", ") + axes[axis] + " = " + axis_text(axes[axis], point.values[axis]);
     }
-    text += "\nwhat helps    " + found->second.sentence + "\n";
+    text += "\n";
   });
-  return text;
+  if (of_least == nullptr) {
+    return {};
+  }
+  if (of_least->noise) {
+    text += "noise         " + noise_text(*of_least->noise, within_noise(times, *of_least->noise)) + "\n";
+  }
+  return text + "what helps    " + of_least->sentence + "\n";
 }
 
 BestPoints best_points(const SweepReader& reader, const std::string& metric, std::optional<double> budget) {

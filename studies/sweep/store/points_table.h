@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "studies/sweep/store/sweep_reader.h"
@@ -14,9 +15,19 @@ namespace marti::studies::sweep {
 /// or false is a boolean.
 [[nodiscard]] tables::Table points_table(const SweepReader& reader);
 
+/// Name, unit and meaning of a column of that table; of any other name a column that was computed. Its type
+/// is still to be set.
+[[nodiscard]] tables::Column point_column(const std::string& name);
+
 /// The fastest machine of those with advice, and what would help it, as lines for people; empty where none
 /// has advice.
 [[nodiscard]] std::string fastest_text(const SweepReader& reader);
+
+/// How many frame times besides the least are within `noise` of it, a share of it.
+[[nodiscard]] std::size_t within_noise(std::span<const double> times, double noise);
+
+/// "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that".
+[[nodiscard]] std::string noise_text(double noise, std::size_t others);
 
 /// Which points are worth their price.
 struct BestPoints {

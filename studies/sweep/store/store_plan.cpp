@@ -168,6 +168,26 @@ void enter_points(tables::SqliteConnection& connection, const SweepPlan& plan,
   }
 }
 
+void enter_question(tables::SqliteConnection& connection, const Question& question) {
+  connection.execute("DELETE FROM question");
+  if (question.asks.empty()) {
+    return;
+  }
+  tables::SqliteStatement insert(connection, tables::insert_sql("question", 8));
+  std::int64_t position = 0;
+  const auto add = [&](const char* kind, const std::string& name, const std::string& text, const Query& query,
+                       const Query& agrees = {}) {
+    insert.run({position++, kind, name, text, query.sql, query.place, agrees.sql, agrees.place});
+  };
+  add("answer", "", question.asks, question.answer);
+  for (const QuestionTable& table : question.tables) {
+    add("table", table.name, table.title, table.rows);
+  }
+  for (const QuestionClaim& claim : question.claims) {
+    add("claim", claim.subject, claim.says, claim.here, claim.agrees);
+  }
+}
+
 void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& plan) {
   connection.execute("DELETE FROM provenance");
   tables::SqliteStatement insert(connection, tables::insert_sql("provenance", 2));
@@ -194,6 +214,7 @@ StoreIds enter_plan(tables::SqliteConnection& connection, const SweepPlan& plan)
     tables::SqliteStatement(connection, tables::insert_sql("compare", 1))
         .run({ids.machines.at(*plan.compare)});
   }
+  enter_question(connection, plan.question);
   enter_provenance(connection, plan);
   return ids;
 }

@@ -20,7 +20,7 @@ namespace marti::studies::sweep {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 4;                // up to 3: without advice
+constexpr std::int64_t format = 5;                // up to 4: without a question
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -48,8 +48,11 @@ CREATE TABLE wait_buckets (machine INTEGER NOT NULL, wait INTEGER NOT NULL, lowe
                            highest INTEGER, count INTEGER NOT NULL,
                            PRIMARY KEY (machine, wait, lowest)) WITHOUT ROWID;
 CREATE TABLE compare (machine INTEGER NOT NULL);
+CREATE TABLE question (position INTEGER PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL,
+                       text TEXT NOT NULL, sql TEXT NOT NULL, place TEXT NOT NULL, agrees TEXT NOT NULL,
+                       agrees_place TEXT NOT NULL);
 CREATE TABLE advice (machine INTEGER PRIMARY KEY, sentence TEXT NOT NULL, settings TEXT NOT NULL, saves REAL,
-                     checksum INTEGER);
+                     noise REAL, checksum INTEGER);
 CREATE TABLE host_sessions (id INTEGER PRIMARY KEY, began TEXT NOT NULL, ended TEXT, host TEXT NOT NULL,
                             process INTEGER NOT NULL, processor TEXT NOT NULL, system TEXT NOT NULL,
                             threads TEXT NOT NULL);

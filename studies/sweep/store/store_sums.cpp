@@ -15,9 +15,9 @@ namespace marti::studies::sweep {
 namespace {
 
 // In the order in which they were made. Table `store` is left to the end, as it holds the checksum.
-constexpr std::string_view plan_tables[] = {"provenance", "columns",        "settings", "sections",
-                                            "frames",     "frame_sections", "machines", "machine_sections",
-                                            "waits",      "buckets",        "points",   "compare"};
+constexpr std::string_view plan_tables[] = {
+    "provenance",       "columns", "settings", "sections", "frames",  "frame_sections", "machines",
+    "machine_sections", "waits",   "buckets",  "points",   "compare", "question"};
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw sim::UserError(file.string() + ": is damaged: " + what +

@@ -105,13 +105,37 @@ std::vector<std::pair<std::string, std::string>> SweepReader::settings(std::int6
   return settings;
 }
 
+Question SweepReader::question() const {
+  Question question;
+  tables::SqliteStatement rows(
+      connection_,
+      "SELECT kind, name, text, sql, place, agrees, agrees_place FROM question ORDER BY position");
+  while (rows.next()) {
+    const std::string kind = rows.text(0);
+    const Query query{rows.text(3), rows.text(4)};
+    if (kind == "answer") {
+      question.asks = rows.text(2);
+      question.answer = query;
+    } else if (kind == "table") {
+      question.tables.push_back({rows.text(1), rows.text(2), query});
+    } else {
+      question.claims.push_back({rows.text(1), rows.text(2), query, {rows.text(5), rows.text(6)}});
+    }
+  }
+  return question;
+}
+
 std::map<std::int64_t, Advice> SweepReader::advice() const {
   std::map<std::int64_t, Advice> all;
-  tables::SqliteStatement rows(connection_, "SELECT machine, sentence, settings, saves FROM advice");
+  tables::SqliteStatement rows(connection_, "SELECT machine, sentence, settings, saves, noise FROM advice");
   while (rows.next()) {
-    all[rows.integer(0)] = {rows.text(1), rows.text(2), rows.get<double>(3)};
+    all[rows.integer(0)] = {rows.text(1), rows.text(2), rows.get<double>(3), rows.get<double>(4)};
   }
   return all;
+}
+
+double SweepReader::noise() const {
+  return connection_.value<double>("SELECT MAX(noise) FROM advice").value_or(0.0);
 }
 
 void SweepReader::for_each_point(

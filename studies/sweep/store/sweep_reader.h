@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "studies/sweep/plan/question.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/store/store_rows.h"
 #include "studies/tables/sqlite_connection.h"
@@ -35,6 +36,9 @@ struct Advice {
   /// The settings that make the step, each as for --set, between them "; ". Empty where nothing helps.
   std::string settings;
   std::optional<double> saves;  ///< share of the frame time that the step saves
+  /// Share of the frame time by which frames of the machine differ with packets in other orders;
+  /// std::nullopt: not measured.
+  std::optional<double> noise{};
 };
 
 /// False when the file is missing or empty, as a sweep that was killed at once leaves it.
@@ -62,8 +66,14 @@ class SweepReader {
   /// Keys and values of a machine and of its frame, sorted by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(std::int64_t machine) const;
 
+  /// What the sweep asks; its places are those of the configuration that gave it.
+  [[nodiscard]] Question question() const;
+
   /// By the ids of machines: of the fastest and others that no other beats, once the sweep has ended.
   [[nodiscard]] std::map<std::int64_t, Advice> advice() const;
+  /// The largest noise of these machines; 0 where none was measured. What differs by less than that may be
+  /// chance.
+  [[nodiscard]] double noise() const;
 
   /// The names of all figures of a point: axes, cost, what is derived (view summary), and all counters.
   [[nodiscard]] const std::vector<std::string>& figures() const { return figures_; }

@@ -115,8 +115,8 @@ void SweepStore::add_result(std::size_t machine, const SweepRow& row, std::int64
 void SweepStore::add_advice(std::size_t machine, const Advice& advice) {
   const std::int64_t id = ids_.machines.at(machine);
   connection_->transact([&] {
-    tables::SqliteStatement(*connection_, tables::insert_sql("advice", 5))
-        .run({id, advice.sentence, advice.settings, advice.saves, tables::Cell()});
+    tables::SqliteStatement(*connection_, tables::insert_sql("advice", 6))
+        .run({id, advice.sentence, advice.settings, advice.saves, advice.noise, tables::Cell()});
     RowSums(*connection_, advice_rows).seal(id);
   });
 }

@@ -183,8 +183,8 @@ TEST(Claims, SayNothingOfLevelsThatTheTreeHasNot) {
   scene.octree.levels = {{0, 1}, {8, 0}};
   scene.bsp.levels = scene.octree.levels;
   for (const studies::tables::Claim& claim : studies::paper::check_tree_claims(std::span(&scene, 1))) {
-    if (claim.paper.find("level") != std::string::npos) {
-      EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject << claim.paper;
+    if (claim.says.find("level") != std::string::npos) {
+      EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject << claim.says;
     }
   }
 }

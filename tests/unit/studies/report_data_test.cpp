@@ -28,6 +28,7 @@
 #include "studies/report/page/report_page.h"
 #include "studies/report/read/report_files.h"
 #include "studies/sweep/store/axis_effects.h"
+#include "studies/sweep/store/points_table.h"
 #include "studies/tables/chart.h"
 #include "studies/tables/csv.h"
 #include "studies/tables/result_directory.h"
@@ -213,9 +214,23 @@ TEST(AxisEffects, AreTheFactorsOfAProduct) {
     EXPECT_NEAR(effects.axes[1].ratio(), 1.25, 1e-6);
     EXPECT_TRUE(effects.interactions.empty());
   }
-  const AxisEffects all = effects_of(1.0);
+  AxisEffects all = effects_of(1.0);
   EXPECT_NEAR(all.axes[0].fastest_by, 0.5, 1e-12) << "4 nodes by the geometric mean of 1, 2 and 4";
   EXPECT_EQ(effects_text(all), "machine.nodes 4.00 times, cache.size 1.25 times");
+  all.noise = 0.26;
+  EXPECT_EQ(effects_text(all),
+            "machine.nodes 4.00 times, one axis no more than another order of packets, 26.00 %");
+  all.noise = 3.0;
+  EXPECT_EQ(effects_text(all), "2 axes no more than another order of packets, 300.00 %");
+}
+
+TEST(Noise, IsTheShareWithinWhichOtherPointsAreNotTold) {
+  const std::vector<double> times = {102.0, 100.0, 100.0, 105.0};
+  EXPECT_EQ(within_noise(times, 0.0), 1U) << "an equal frame is not told at all";
+  EXPECT_EQ(within_noise(times, 0.02), 2U);
+  EXPECT_EQ(within_noise(times, 1.0), 3U);
+  EXPECT_EQ(noise_text(0.004, 2),
+            "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that");
 }
 
 // Of the residuals of a 2 by 3 table with one larger cell, t: t/3 there, -t/3 below, -t/6 and t/6 beside (in

@@ -1,0 +1,254 @@
+#include "studies/tables/query_sandbox.h"
+
+#include <SQLiteCpp/Column.h>
+#include <SQLiteCpp/Statement.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "sim/error.h"
+#include "sim/units.h"
+#include "studies/tables/sqlite_connection.h"
+#include "studies/tables/text_units.h"
+
+namespace marti::studies::tables {
+
+namespace {
+
+constexpr int steps_at_a_time = 100'000;
+constexpr int most_times = 2'000;  // so many steps
+constexpr std::size_t most_rows = 10'000;
+constexpr int longest_value = 1'000'000;
+constexpr int longest_query_pattern = 200;
+constexpr int deepest_query = 200;
+
+// Functions of SQLite that depend on chance, on the time or on other statements, reach beyond the table, or
+// take memory at will.
+constexpr std::array<std::string_view, 22> refused_functions = {"changes",
+                                                                "current_date",
+                                                                "current_time",
+                                                                "current_timestamp",
+                                                                "date",
+                                                                "datetime",
+                                                                "fts3_tokenizer",
+                                                                "julianday",
+                                                                "last_insert_rowid",
+                                                                "load_extension",
+                                                                "random",
+                                                                "randomblob",
+                                                                "readfile",
+                                                                "sqlite_compileoption_get",
+                                                                "sqlite_compileoption_used",
+                                                                "sqlite_log",
+                                                                "sqlite_source_id",
+                                                                "sqlite_version",
+                                                                "strftime",
+                                                                "time",
+                                                                "total_changes",
+                                                                "zeroblob"};
+static_assert(std::ranges::is_sorted(refused_functions));
+
+// What an authorizer and a progress handler know of the query that runs.
+struct Watched {
+  std::string_view table;
+  std::set<std::string>* reads = nullptr;
+  int times = 0;
+  bool too_long = false;
+};
+
+int authorize(void* user, int action, const char* first, const char* second, const char* /*database*/,
+              const char* /*trigger*/) {
+  auto& watched = *static_cast<Watched*>(user);
+  switch (action) {
+    case SQLITE_SELECT:
+      return SQLITE_OK;
+    case SQLITE_READ:
+      // Of a table within the query, as WITH makes one, SQLite asks as well. An empty column: only rows are
+      // counted.
+      if (first == watched.table && watched.reads != nullptr && second != nullptr && *second != '\0') {
+        watched.reads->insert(second);
+      }
+      return first == std::string_view("sqlite_master") || first == std::string_view("sqlite_schema")
+                 ? SQLITE_DENY
+                 : SQLITE_OK;
+    case SQLITE_FUNCTION:
+      return second != nullptr && std::ranges::binary_search(refused_functions, std::string_view(second))
+                 ? SQLITE_DENY
+                 : SQLITE_OK;
+    default:
+      return SQLITE_DENY;
+  }
+}
+
+int one_more_time(void* user) {
+  auto& watched = *static_cast<Watched*>(user);
+  watched.too_long = ++watched.times > most_times;
+  return watched.too_long ? 1 : 0;
+}
+
+// Has a connection ask these two while it lives.
+class Watching {
+ public:
+  Watching(sqlite3* database, Watched& watched) : database_(database) {
+    sqlite3_set_authorizer(database, authorize, &watched);
+    sqlite3_progress_handler(database, steps_at_a_time, one_more_time, &watched);
+  }
+  Watching(const Watching&) = delete;
+  Watching& operator=(const Watching&) = delete;
+  ~Watching() {
+    sqlite3_progress_handler(database_, 0, nullptr, nullptr);
+    sqlite3_set_authorizer(database_, nullptr, nullptr);
+  }
+
+ private:
+  sqlite3* database_;
+};
+
+Cell cell_of(sqlite3_value* value) {
+  switch (sqlite3_value_type(value)) {
+    case SQLITE_INTEGER:
+      return std::int64_t{sqlite3_value_int64(value)};
+    case SQLITE_FLOAT:
+      return sqlite3_value_double(value);
+    case SQLITE_NULL:
+      return {};
+    default: {
+      const auto* const text = reinterpret_cast<const char*>(sqlite3_value_text(value));
+      return text == nullptr ? Cell() : Cell(text);
+    }
+  }
+}
+
+Cell cell_of(const SQLite::Column& column) {
+  return column.isNull()      ? Cell()
+         : column.isInteger() ? Cell(std::int64_t{column.getInt64()})
+         : column.isFloat()   ? Cell(column.getDouble())
+                              : Cell(column.getString());
+}
+
+// The SQL function shown(VALUE, UNIT).
+void shown(sqlite3_context* context, int /*count*/, sqlite3_value** arguments) {
+  try {
+    const Cell unit = cell_of(arguments[1]);
+    const auto* const name = std::get_if<std::string>(&unit);
+    const Cell value = cell_of(arguments[0]);
+    const auto* const whole = std::get_if<std::int64_t>(&value);
+    const std::string text = name != nullptr && *name == "byte" && whole != nullptr && *whole >= 0
+                                 ? sim::print_size(*whole)
+                                 : figure_text(value, name == nullptr ? "" : *name, "-");
+    sqlite3_result_text(context, text.c_str(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+  } catch (const std::exception& error) {
+    sqlite3_result_error(context, error.what(), -1);
+  }
+}
+
+[[noreturn]] void fail(const std::string& place, const std::string& reason) {
+  throw sim::UserError(place + ": " + reason);
+}
+
+// Whether something follows the first statement, which SQLite would leave out without a word.
+bool is_followed(sqlite3* database, const std::string& sql) {
+  sqlite3_stmt* statement = nullptr;
+  const char* tail = nullptr;
+  if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, &tail) != SQLITE_OK) {
+    return false;  // it is refused later, with the reason
+  }
+  sqlite3_finalize(statement);
+  statement = nullptr;
+  const bool nothing =
+      sqlite3_prepare_v2(database, tail, -1, &statement, nullptr) == SQLITE_OK && statement == nullptr;
+  sqlite3_finalize(statement);
+  return !nothing;
+}
+
+}  // namespace
+
+QuerySandbox::QuerySandbox(std::string table, std::vector<std::string> columns)
+    : database_(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_MEMORY | SQLite::OPEN_NOMUTEX),
+      table_(std::move(table)),
+      insert_(insert_sql(sql_name(table_), columns.size())) {
+  std::string sql;
+  for (const std::string& column : columns) {
+    sql += (sql.empty() ? "" : ", ") + sql_name(column);
+  }
+  database_.exec("CREATE TABLE " + sql_name(table_) + " (" + sql + ")");
+  sqlite3* const handle = database_.getHandle();
+  // A name that no column has is an error, not a text.
+  sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, longest_value);
+  sqlite3_limit(handle, SQLITE_LIMIT_LIKE_PATTERN_LENGTH, longest_query_pattern);
+  sqlite3_limit(handle, SQLITE_LIMIT_EXPR_DEPTH, deepest_query);
+  database_.createFunction("shown", 2, true, nullptr, shown);
+}
+
+void QuerySandbox::add_row(std::span<const Cell> cells) {
+  SQLite::Statement statement(database_, insert_);
+  int index = 0;
+  for (const Cell& cell : cells) {
+    ++index;
+    std::visit(
+        [&](const auto& value) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) {
+            statement.bind(index);
+          } else {
+            statement.bind(index, value);
+          }
+        },
+        static_cast<const CellValue&>(cell));
+  }
+  (void)statement.exec();
+}
+
+QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const std::string& place,
+                                     std::set<std::string>* reads) {
+  sqlite3* const handle = database_.getHandle();
+  Watched watched{table_, reads};
+  if (sql.find('\0') != std::string::npos) {
+    fail(place, "has a character that no query has");
+  }
+  const Watching watching(handle, watched);
+  Rows found;
+  try {
+    if (is_followed(handle, sql)) {
+      fail(place, "has more than one statement");
+    }
+    SQLite::Statement statement(database_, sql);
+    if (statement.getColumnCount() == 0 || statement.getBindParameterCount() != 0) {
+      fail(place, "is no SELECT without parameters");
+    }
+    for (int column = 0; column < statement.getColumnCount(); ++column) {
+      found.names.emplace_back(statement.getColumnName(column));
+    }
+    while (statement.executeStep()) {
+      if (found.rows.size() == most_rows) {
+        fail(place, fmt::format("gives more than {} rows", most_rows));
+      }
+      std::vector<Cell>& row = found.rows.emplace_back();
+      for (int column = 0; column < statement.getColumnCount(); ++column) {
+        row.push_back(cell_of(statement.getColumn(column)));
+      }
+    }
+  } catch (const SQLite::Exception& error) {
+    if (error.getErrorCode() == SQLITE_NOMEM) {
+      throw std::bad_alloc();
+    }
+    const std::string_view reason = error.what();
+    if (watched.too_long) {
+      fail(place, "takes too long: more than 2e8 steps of SQLite");
+    }
+    if (error.getErrorCode() == SQLITE_AUTH || reason.starts_with("not authorized")) {
+      fail(place, fmt::format("may only read the table {} and compute (SQLite: {})", table_, reason));
+    }
+    fail(place, fmt::format("SQLite: {}", reason));
+  }
+  return found;
+}
+
+}  // namespace marti::studies::tables
