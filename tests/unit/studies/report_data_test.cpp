@@ -220,8 +220,8 @@ TEST(AxisEffects, AreTheFactorsOfAProduct) {
   all.noise = 0.26;
   EXPECT_EQ(effects_text(all),
             "machine.nodes 4.00 times, one axis no more than another order of packets, 26.00 %");
-  all.noise = 3.0;
-  EXPECT_EQ(effects_text(all), "2 axes no more than another order of packets, 300.00 %");
+  all.noise = 3.1;
+  EXPECT_EQ(effects_text(all), "2 axes no more than another order of packets, 310.00 %");
 }
 
 TEST(Noise, IsTheShareWithinWhichOtherPointsAreNotTold) {
