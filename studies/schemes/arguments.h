@@ -1,5 +1,5 @@
-// Statements beside what was measured about parallel machines beside what the study measured. (McNeill et al.
-// 1992, section 3; the space-parallel one after Birtwistle, Cleary, Wyvill, Vatti 1986.)
+// The paper's statements about parallel machines beside what the study measured. (McNeill et al. 1992,
+// section 3; the space-parallel one after Birtwistle, Cleary, Wyvill, Vatti 1986.)
 #pragma once
 
 #include <optional>

@@ -24,9 +24,10 @@ const std::string small_paper =
 
 TEST(Study, ThePaperWritesTablesChartsAndADatabase) {
   const TemporaryDirectory directory;
-  EXPECT_GE(expect_study("paper " + small_paper, directory.path(),
-                         {"Table 1", "Figure 3", "Statements beside what was measured", "results.sqlite"}, {}),
-            12);
+  EXPECT_GE(
+      expect_study("paper " + small_paper, directory.path(),
+                   {"Table 1", "Figure 3", "Statements beside what was measured", "results.sqlite"}, {}),
+      12);
 }
 
 TEST(Study, ReplacesNoSweep) {
