@@ -17,9 +17,9 @@ mkdirSync(work, { recursive: true });
 const config = join(work, "explored.toml");
 writeFileSync(config, '[scene]\nsource = "tetra:4"\n[image]\nwidth = 48\nheight = 40\n[machine]\nnodes = 4\n[cache]\nsize = "1 KiB"\n');
 
-const run = async (file, settings) => {
+const run = async (file, settings, helps = "--no-what-helps") => {
   const set = Object.entries(settings).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
-  const { stdout } = await promisify(execFile)(program, ["run", file, ...set, "--json"], { maxBuffer: 1 << 28 });
+  const { stdout } = await promisify(execFile)(program, ["run", file, ...set, "--json", helps], { maxBuffer: 1 << 28 });
   return JSON.parse(stdout);
 };
 
@@ -139,7 +139,7 @@ describe("the page of marti explore", () => {
       for (const { at, value } of await page.$$eval("#curve circle", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
         assert.equal(Number(value), (await run(config, { "machine.nodes": at })).figures.machine.speed_up);
       }
-      const { machine } = await run(config, {});
+      const { machine } = await run(config, {}, "--what-helps");
       await page.waitForFunction((text) => document.getElementById("helps").textContent === text, machine.what_helps.sentence);
       const best = machine.what_helps.resources.find(({ step }) => step?.saved > 0);
       await page.locator("#steps button").first().click();
