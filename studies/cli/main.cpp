@@ -36,7 +36,7 @@
 #include "studies/cli/shell_completion.h"
 #include "studies/cli/sweep_command.h"
 #include "studies/compare/compare.h"
-#include "studies/compare/page_parts.h"
+#include "studies/compare/page.h"
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/estimate/within.h"

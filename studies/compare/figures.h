@@ -1,15 +1,14 @@
-// The figures of two results beside each other, and where their cycles went.
+// A result as comparisons see it, the catalogue's words for its figures, and where the time of two went.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "studies/sweep/store/sweep_reader.h"
+#include "sim/time.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::compare {
@@ -18,6 +17,7 @@ namespace marti::studies::compare {
 /// say how the program worked. A figure is an integer, a real or a text (a hash, the scene's name).
 using Figures = std::map<std::string, tables::Cell>;
 
+/// A run, or a point of a sweep.
 struct ComparedResult {
   std::string name;                             ///< as on the command line
   std::string version;                          ///< of the program that made it
@@ -28,52 +28,44 @@ struct ComparedResult {
   std::string helps;  ///< what would make its frame shorter, in a sentence; empty where it is not recorded
 };
 
-/// A `result.json`. Throws UserError for a file that cannot be read, is not a result, or is one of another
-/// schema.
-[[nodiscard]] ComparedResult read_run(const std::filesystem::path& file, const std::string& name);
-
-/// A point of a sweep. Throws UserError when it has not been run yet, or there is no such point.
-[[nodiscard]] ComparedResult read_point(const sweep::SweepReader& sweep, std::int64_t ordinal,
-                                        const std::string& name);
-
-/// The counted figures of a row.
-void add_counters(const sweep::SweepRow& row, Figures& figures);
-
-/// The frame: its figures as those of a result are named, and the scene's hash.
-void add_frame(const sweep::FrameRow& row, ComparedResult& result);
-
-/// Removes what cannot be compared with a sweep: figures that are measured against another machine, which a
-/// run and a sweep do not choose alike, and settings that a sweep does not keep, because no result depends on
-/// them.
-void keep_what_sweeps_have(ComparedResult& result);
-
-/// The value of an integer figure; std::nullopt when the result has no such figure.
-[[nodiscard]] std::optional<std::int64_t> integer_figure(const ComparedResult& result,
-                                                         const std::string& name);
-
-/// The frame time in ps; std::nullopt when the result has none above 0.
-[[nodiscard]] std::optional<std::int64_t> frame_time_if_any(const ComparedResult& result);
+/// The frame time in ps; 0 when the result has none above 0.
+[[nodiscard]] std::int64_t frame_time_if_any(const ComparedResult& result);
 /// The frame time in ps. Throws UserError when the result has none above 0.
 [[nodiscard]] std::int64_t frame_time(const ComparedResult& result);
 
-/// The unit of a compared figure by the catalogue; empty for a text and for a figure that it does not have.
+/// Whether a figure says something about the machine or frame, not about how the program worked. One that the
+/// catalogue does not have is compared, too.
+[[nodiscard]] bool is_compared(std::string_view name);
+/// The unit of a figure by the catalogue; empty for a text and for a figure that it does not have.
 [[nodiscard]] std::string unit_of_figure(std::string_view name);
 /// What the catalogue says of it.
 [[nodiscard]] std::string meaning_of_figure(std::string_view name);
 
-/// The time of a machine's nodes in one activity. A mean of a node is the nodes' time by their number.
+/// The time of two machines' nodes in one activity; of several pairs of machines the means over the pairs.
 struct ActivityTime {
   std::string activity;
-  tables::Cell a;           ///< of all nodes of A, ps
-  tables::Cell b;           ///< of all nodes of B, ps
-  std::int64_t mean_a = 0;  ///< of a node, rounded to ps
-  std::int64_t mean_b = 0;
-  double change = 0.0;  ///< of the mean, ps, before rounding
+  sim::Sum a = 0;         ///< of all nodes of A, ps; of several pairs their sum
+  sim::Sum b = 0;         ///< of all nodes of B
+  double mean_a = 0.0;    ///< of a node, ps
+  double mean_b = 0.0;    ///< of a node, ps
+  double change = 0.0;    ///< mean_b - mean_a
+  double of_frame = 0.0;  ///< the change by the frame time of A: of all activities together B / A - 1
 };
 
-/// The largest change first, then by the order of the activities. Activities in which neither spends time
-/// are left out. Empty when a result lacks the times or the number of its nodes, or their sum is not the
-/// frame time (somebody has changed the file).
-[[nodiscard]] std::vector<ActivityTime> activity_times(const ComparedResult& a, const ComparedResult& b);
+/// Adds up where the time of pairs of machines went.
+class ActivityTimes {
+ public:
+  /// Nothing when a result lacks the times, the number of its nodes or a frame time, or when the times' sum
+  /// is not the nodes' frame times: somebody has changed the file.
+  void add(const ComparedResult& a, const ComparedResult& b);
+
+  /// The largest part of the frame first, then by the order of the activities. Activities in which nobody
+  /// spends time are left out. Empty when nothing was added.
+  [[nodiscard]] std::vector<ActivityTime> means() const;
+
+ private:
+  std::vector<ActivityTime> sums_;  // of all activities, once a pair has been added
+  double pairs_ = 0.0;
+};
 
 }  // namespace marti::studies::compare

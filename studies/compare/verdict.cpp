@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
+#include <span>
+#include <string_view>
 
 #include "sim/joined.h"
-#include "studies/compare/compare_text.h"
-#include "studies/compare/differences.h"
 #include "studies/report/model/answer_text.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/text_units.h"
@@ -18,17 +17,19 @@ namespace marti::studies::compare {
 
 namespace {
 
-// A sentence names no more than this of a list.
+// A sentence names no more than so much of a list.
 constexpr std::size_t most_named = 6;
-// Activities are named until they explain this part of the change, and no more than so many.
-constexpr double enough = 0.9;
 constexpr std::size_t most_activities = 3;
-// Beyond this part of the change, what goes the other way is told too.
-constexpr double most_against = 0.25;
 
-std::optional<double> figure(const ComparedResult& result, const std::string& name) {
-  const auto at = result.figures.find(name);
-  return at == result.figures.end() ? std::nullopt : tables::number_of(at->second);
+// A figure of two results as it differs, or as it is equal.
+const FigureDifference* figure(const Comparison& found, std::string_view name) {
+  for (const std::vector<FigureDifference>* figures : {&found.figures, &found.equal}) {
+    const auto at = std::ranges::find(*figures, name, &FigureDifference::name);
+    if (at != figures->end()) {
+      return &*at;
+    }
+  }
+  return nullptr;
 }
 
 // "cache.size is 16 KiB in A and 4 KiB in B".
@@ -36,7 +37,7 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
   std::vector<std::string> parts;
   for (const Difference& setting : settings) {
     // A setting that only one machine uses follows from another one.
-    if (setting.a != tables::Cell() && setting.b != tables::Cell() && parts.size() < most_named) {
+    if (!setting.is_one_sided() && parts.size() < most_named) {
       parts.push_back(fmt::format("{} ({} in A, {} in B)", setting.name, setting_text(setting.a),
                                   setting_text(setting.b)));
     }
@@ -50,53 +51,24 @@ std::string settings_sentence(const std::vector<Difference>& settings) {
   return sim::listed(parts);
 }
 
-// Where the activities pull in both directions: the largest changes of either.
-std::string both_ways(const ComparedPair& pair) {
+// Where the nodes' time changes most.
+std::string changes_sentence(const Comparison& found) {
   std::vector<std::string> parts;
-  for (const ActivityTime& time : pair.times) {
-    if (parts.size() == most_activities) {
-      break;
+  for (const ActivityTime& time : found.times) {
+    if (time.change != 0.0 && parts.size() < most_activities) {
+      parts.push_back(fmt::format("{} ({}, {} of A's frame)", report::words(time.activity),
+                                  tables::signed_seconds(std::llround(time.change)),
+                                  tables::signed_percent(time.of_frame)));
     }
-    parts.push_back(fmt::format("{} ({})", report::words(time.activity),
-                                tables::signed_seconds(std::llround(time.change))));
   }
-  return "What changes most, as the mean of a node: " + sim::listed(parts) + ".";
-}
-
-// Which activities the change of the frame time comes from.
-std::string why(const ComparedPair& pair, std::int64_t change) {
-  const double all = static_cast<double>(change);
-  double against = 0.0;
-  for (const ActivityTime& time : pair.times) {
-    against += time.change * all < 0.0 ? std::abs(time.change) : 0.0;
-  }
-  if (against > most_against * std::abs(all)) {
-    return both_ways(pair);
-  }
-  std::vector<std::string> parts;
-  double explained = 0.0;
-  for (const ActivityTime& time : pair.times) {
-    if (time.change * all <= 0.0) {
-      continue;  // goes the other way
-    }
-    if (parts.size() == most_activities || explained >= enough * std::abs(all)) {
-      break;
-    }
-    explained += std::abs(time.change);
-    parts.push_back(fmt::format("{} {}{} ({})", tables::seconds(std::llround(std::abs(time.change))),
-                                parts.empty() ? "are " : "", report::words(time.activity),
-                                tables::rough_percent(time.change / all)));
-  }
-  if (parts.empty()) {
-    return {};
-  }
-  return fmt::format("Of the {} {}, {}, as the mean of a node.", tables::seconds(std::abs(change)),
-                     change > 0 ? "more" : "less", sim::listed(parts));
+  return parts.empty() ? ""
+                       : fmt::format("What changes most, as the mean of a node{}: {}.",
+                                     found.join == Join::one ? "" : " and of all points", sim::listed(parts));
 }
 
 // Whether the difference is less than another order of packets makes, where that is known of either result.
-std::string noise_sentence(const ComparedPair& pair, std::int64_t a, std::int64_t b) {
-  const double band = std::max(pair.a.noise.value_or(0.0), pair.b.noise.value_or(0.0));
+std::string noise_sentence(const Comparison& found, std::int64_t a, std::int64_t b) {
+  const double band = std::max(found.a.noise.value_or(0.0), found.b.noise.value_or(0.0));
   const double difference = std::abs(static_cast<double>(b) / static_cast<double>(a) - 1.0);
   if (a == b || difference > band) {
     return {};
@@ -106,36 +78,26 @@ std::string noise_sentence(const ComparedPair& pair, std::int64_t a, std::int64_
       tables::percent(band));
 }
 
-std::string misses_sentence(const ComparedPair& pair) {
-  const std::optional<double> a = figure(pair.a, "misses");
-  const std::optional<double> b = figure(pair.b, "misses");
-  const std::optional<double> ratio_a = figure(pair.a, "hit_ratio");
-  const std::optional<double> ratio_b = figure(pair.b, "hit_ratio");
+std::string misses_sentence(const Comparison& found) {
+  const FigureDifference* const misses = figure(found, "misses");
+  const FigureDifference* const ratio = figure(found, "hit_ratio");
+  if (misses == nullptr || ratio == nullptr || !misses->relative() || !ratio->relative()) {
+    return {};
+  }
+  const double a = *tables::number_of(misses->a);
+  const double b = *tables::number_of(misses->b);
   constexpr double least = 0.01;  // a smaller change is not worth a sentence
-  if (!a || !b || !ratio_a || !ratio_b || *a <= 0.0 || std::abs(*b - *a) < least * *a) {
+  if (a <= 0.0 || std::abs(b - a) < least * a) {
     return {};
   }
   return fmt::format(
       "The nodes of B miss {} times as often ({} lines, {} in A); their hit ratio is {}, {} in A.",
-      tables::times(*b / *a), tables::figure_text(pair.b.figures.at("misses"), "1", "-"),
-      tables::figure_text(pair.a.figures.at("misses"), "1", "-"), tables::percent(*ratio_b),
-      tables::percent(*ratio_a));
+      tables::times(b / a), tables::figure_text(misses->b, "1", "-"),
+      tables::figure_text(misses->a, "1", "-"), tables::percent(*tables::number_of(ratio->b)),
+      tables::percent(*tables::number_of(ratio->a)));
 }
 
-}  // namespace
-
-ComparedPair compared_pair(ComparedResult a, ComparedResult b) {
-  ComparedPair pair;
-  pair.differences = differences_of(a, b);
-  pair.same_frame = same_frame(a, b);
-  if (pair.same_frame) {
-    pair.times = activity_times(a, b);
-  }
-  pair.a = std::move(a);
-  pair.b = std::move(b);
-  return pair;
-}
-
+// "B is slower: its frame takes 69.061 ms, that of A 40.858 ms, 1.69 times as long (+69.0 %)".
 std::string speed_text(std::int64_t a, std::int64_t b) {
   if (a == b) {
     return fmt::format("A and B are equally fast: a frame takes {}", tables::seconds(a));
@@ -147,44 +109,117 @@ std::string speed_text(std::int64_t a, std::int64_t b) {
                      tables::signed_percent(ratio - 1.0));
 }
 
-std::vector<std::string> verdict_of(const ComparedPair& pair) {
-  const std::optional<std::int64_t> a = frame_time_if_any(pair.a);
-  const std::optional<std::int64_t> b = frame_time_if_any(pair.b);
-  if (!a || !b) {
+// "point 10 of A (machine.nodes 8, cache.size 4 KiB)".
+std::string point_text(const Comparison& found, const JoinedPoint& point) {
+  return fmt::format("point {} of {}{}", found.point(point), found.sweep_is_a ? "A" : "B",
+                     point.name.empty() ? "" : " (" + point.name + ")");
+}
+
+using Sentences = std::vector<std::string>;
+
+Sentences verdict_of_two(const Comparison& found) {
+  const std::int64_t a = found.points.front().end_a;
+  const std::int64_t b = found.points.front().end_b;
+  if (a == 0 || b == 0) {
     return {};
   }
-  const std::vector<Difference>& settings = pair.differences.settings;
-  std::vector<std::string> sentences;
-  const auto say = [&sentences](const std::string& sentence) {
-    if (!sentence.empty()) {
-      sentences.push_back(sentence);
-    }
-  };
-  if (!pair.same_frame) {
-    const std::vector<Difference> of_frame = frame_settings(settings);
-    say(fmt::format(
+  if (found.comparable == 0) {
+    return {fmt::format(
         "A and B render different frames{}: their times, {} and {}, are of different work and say "
         "nothing about the machines.",
-        of_frame.empty() ? "" : ", by " + settings_sentence(of_frame), tables::seconds(*a),
-        tables::seconds(*b)));
-  } else {
-    say(speed_text(*a, *b) + ".");
-    say(noise_sentence(pair, *a, *b));
-    say(*a == *b ? std::string() : why(pair, *b - *a));
-    say(misses_sentence(pair));
-    say(settings.empty() ? "No setting differs." : "What differs: " + settings_sentence(settings) + ".");
+        found.frame.empty() ? "" : ", by " + settings_sentence(found.frame), tables::seconds(a),
+        tables::seconds(b))};
+  }
+  Sentences sentences = {
+      speed_text(a, b) + ".", noise_sentence(found, a, b), a == b ? "" : changes_sentence(found),
+      misses_sentence(found),
+      found.alike.empty() ? "No setting differs." : "What differs: " + settings_sentence(found.alike) + "."};
+  std::erase(sentences, "");
+  return sentences;
+}
+
+// How many comparable points are faster in B, equal, slower; where B gains and loses most; and the mean.
+void say_which_is_faster(const Comparison& found, Sentences& sentences) {
+  const std::span<const JoinedPoint> points(found.points.data(), found.comparable);
+  const auto count = [&](auto is) { return std::ranges::count_if(points, is); };
+  sentences.push_back(fmt::format("Of {}{}, B is faster at {}, as fast as A at {} and slower at {}.",
+                                  tables::counted(points.size(), "point"),
+                                  found.join == Join::each ? "" : " that both have",
+                                  count([](const JoinedPoint& point) { return point.end_b < point.end_a; }),
+                                  count([](const JoinedPoint& point) { return point.end_b == point.end_a; }),
+                                  count([](const JoinedPoint& point) { return point.end_b > point.end_a; })));
+  const auto [best, worst] = std::ranges::minmax_element(points, {}, &JoinedPoint::ratio);
+  const auto say = [&](const char* what, const JoinedPoint& point) {
+    sentences.push_back(fmt::format("B {} most at {}: {}.", what, point_text(found, point),
+                                    speed_text(point.end_a, point.end_b)));
+  };
+  if (best->end_b < best->end_a) {
+    say("gains", *best);
+  }
+  if (worst->end_b > worst->end_a) {
+    say("loses", *worst);
+  }
+  if (best->ratio() != worst->ratio()) {
+    sentences.push_back(fmt::format("In the geometric mean B takes {} times as long as A.",
+                                    tables::times(*mean_ratio(found))));
+    sentences.push_back(changes_sentence(found));
+    std::erase(sentences, "");
+  }
+}
+
+// The machine of a sweep that is most like the result's.
+std::string nearest_sentence(const Comparison& found) {
+  const JoinedPoint& nearest = found.points[found.nearest];
+  return fmt::format("The nearest machine is that of {}, which differs in {}: its frame takes {}{}.",
+                     point_text(found, nearest), tables::counted(nearest.distance, "setting"),
+                     tables::seconds(found.end(nearest)),
+                     nearest.same_frame ? fmt::format(", B / A = {:.4f}", nearest.ratio()) : "");
+}
+
+}  // namespace
+
+Sentences verdict_of(const Comparison& found) {
+  if (found.join == Join::one) {
+    return verdict_of_two(found);
+  }
+  if (found.points.empty()) {
+    return {"No point is timed in both sweeps, so there is nothing to compare."};
+  }
+  Sentences sentences;
+  if (found.comparable > 0) {
+    say_which_is_faster(found, sentences);
+  }
+  if (const std::size_t others = found.points.size() - found.comparable; others > 0) {
+    sentences.push_back(fmt::format("{} {} different frames: their times say nothing about the machines.",
+                                    tables::counted(others, "joined point"),
+                                    others == 1 ? "renders" : "render"));
+  }
+  if (found.equal_points == found.points.size()) {
+    sentences.emplace_back("All points are equal in every counter.");
+  }
+  if (found.join == Join::each) {
+    sentences.push_back(nearest_sentence(found));
   }
   return sentences;
 }
 
-std::vector<std::string> helps_of(const ComparedPair& pair) {
-  std::vector<std::string> sentences;
-  for (const ComparedResult* result : {&pair.a, &pair.b}) {
-    if (!result->helps.empty()) {
-      sentences.push_back(fmt::format("What helps {}: {}.", result == &pair.a ? "A" : "B", result->helps));
+Sentences helps_of(const Comparison& found) {
+  Sentences sentences;
+  for (const Side* side : {&found.a, &found.b}) {
+    if (!side->helps.empty()) {
+      sentences.push_back(fmt::format("What helps {}: {}.", side == &found.a ? "A" : "B", side->helps));
     }
   }
   return sentences;
+}
+
+std::optional<double> mean_ratio(const Comparison& found) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < found.comparable; ++i) {
+    sum += std::log(found.points[i].ratio());
+  }
+  return found.comparable == 0 ? std::nullopt
+                               : std::optional(std::exp(sum / static_cast<double>(found.comparable)));
 }
 
 }  // namespace marti::studies::compare

@@ -1,34 +1,22 @@
-// What a comparison of two results says in sentences: which is faster, by how much and why.
+// What a comparison says in sentences: which is faster, by how much and why.
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "studies/compare/differences.h"
-#include "studies/compare/figures.h"
+#include "studies/compare/comparison.h"
 
 namespace marti::studies::compare {
 
-/// Two results, and all that is said of them.
-struct ComparedPair {
-  ComparedResult a;
-  ComparedResult b;
-  Differences differences;
-  bool same_frame = false;
-  std::vector<ActivityTime> times;  ///< empty when the frames differ, or the results lack the times
-};
+/// The most important sentence first. Of frames that differ it says what differs in them, and not that a
+/// machine is faster. Two results without a frame time have none.
+[[nodiscard]] std::vector<std::string> verdict_of(const Comparison& found);
 
-[[nodiscard]] ComparedPair compared_pair(ComparedResult a, ComparedResult b);
+/// What would make each frame shorter, where it is recorded; of two results.
+[[nodiscard]] std::vector<std::string> helps_of(const Comparison& found);
 
-/// "B is slower: its frame takes 69.061 ms, that of A 40.858 ms, 1.69 times as long (+69.0 %)".
-[[nodiscard]] std::string speed_text(std::int64_t a, std::int64_t b);
-
-/// The most important sentence first. Of two frames that differ it says what differs in them, and not that a
-/// machine is faster. Results without a frame time have none.
-[[nodiscard]] std::vector<std::string> verdict_of(const ComparedPair& pair);
-
-/// What would make each frame shorter, where it is recorded.
-[[nodiscard]] std::vector<std::string> helps_of(const ComparedPair& pair);
+/// The geometric mean of the ratios B / A of the comparable points; std::nullopt without one.
+[[nodiscard]] std::optional<double> mean_ratio(const Comparison& found);
 
 }  // namespace marti::studies::compare

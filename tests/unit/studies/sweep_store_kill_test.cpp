@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "sim/files.h"
-#include "studies/compare/two_sweeps.h"
+#include "studies/compare/compare.h"
 #include "studies/report/read/read_report.h"
 #include "studies/sweep/store/points_table.h"
 #include "studies/sweep/store/store_parts.h"
@@ -192,7 +192,7 @@ std::string shown(const fs::path& file, std::size_t& done) {
     DoneKeys keys;
     keys.add(file);  // as --plan does
     done = keys.machines.size();
-    text = csv_of(points_table(SweepReader(file))) + text_of(two_sweeps(file, file), false);
+    text = csv_of(points_table(SweepReader(file))) + compare_results(file.string(), file.string());
     text += read_report(file.parent_path()).title;
   });
   return message == "no UserError" ? text : message;
