@@ -20,4 +20,8 @@ struct ComparisonPage;
 [[nodiscard]] std::string compare_results(const std::string& a, const std::string& b,
                                           const CompareOptions& options = {}, ComparisonPage* page = nullptr);
 
+/// The page; its tables have at most 20,000 rows. UserError when the program was built without the scripts
+/// that draw charts.
+[[nodiscard]] std::string html_of(const ComparisonPage& page);
+
 }  // namespace marti::studies::compare

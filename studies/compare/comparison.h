@@ -1,4 +1,5 @@
-// Two results compared: their points joined, and what differs between the points that have found each other.
+// Two results compared: their points joined, what differs between points that have found each other, and what
+// that says in sentences.
 #pragma once
 
 #include <algorithm>
@@ -92,5 +93,15 @@ struct Comparison {
 /// Throws UserError when a run is compared with a sweep of which no point has been timed, and when there is a
 /// sweep and a point has no frame time.
 [[nodiscard]] Comparison compared(Results& a, Results& b);
+
+/// The most important sentence first. Of frames that differ it says what differs in them, and not that a
+/// machine is faster. Two results without a frame time have none.
+[[nodiscard]] std::vector<std::string> verdict_of(const Comparison& found);
+
+/// What would make each frame shorter, where it is recorded; of two results.
+[[nodiscard]] std::vector<std::string> helps_of(const Comparison& found);
+
+/// The geometric mean of the ratios B / A of the comparable points; std::nullopt without one.
+[[nodiscard]] std::optional<double> mean_ratio(const Comparison& found);
 
 }  // namespace marti::studies::compare

@@ -4,7 +4,6 @@
 
 #include "sim/mapped.h"
 #include "studies/compare/page.h"
-#include "studies/compare/verdict.h"
 #include "studies/keys/setting_value.h"
 #include "studies/tables/json_table.h"
 

@@ -12,7 +12,6 @@
 
 #include "sim/joined.h"
 #include "sim/mapped.h"
-#include "studies/compare/verdict.h"
 #include "studies/report/model/chart_library.h"
 #include "studies/sweep/plan/axis_text.h"
 #include "studies/sweep/plan/sweep_keys.h"

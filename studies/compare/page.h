@@ -1,4 +1,4 @@
-// What is shown of a comparison, and how it is written: as text and as a page.
+// What is shown of a comparison: to people in a text or on a page, and to programs.
 #pragma once
 
 #include <string>
@@ -34,14 +34,6 @@ struct ComparisonPage {
 
 /// `all`: with the figures of two results that are equal.
 [[nodiscard]] ComparisonPage page_of(const Comparison& found, bool all);
-
-/// Ends in a line break. Lists have at most 20 lines unless `all`. Control characters, which must not reach
-/// the terminal, are shown as '?'.
-[[nodiscard]] std::string text_of(const ComparisonPage& page, bool all);
-
-/// The HTML; tables have at most 20,000 rows. UserError when the program was built without the scripts that
-/// draw charts.
-[[nodiscard]] std::string html_of(const ComparisonPage& page);
 
 /// One object for programs. Settings have the values that their keys have: sizes in bytes, frequencies in Hz,
 /// times in ps, shares, booleans and lists.

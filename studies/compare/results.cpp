@@ -84,13 +84,20 @@ ComparedResult read_point(const sweep::SweepReader& store, const sweep::StoredPo
   }
   const figures::Counts counts = store.read_result(point.machine)->counters;
   add_counts(figures::counted_figures(), counts, "", result.figures);
+  if (!derived) {
+    return result;
+  }
   for (const figures::FigureEntry& entry : figures::derived_figures()) {
     // One that is measured against another machine has no value without that machine.
-    const std::optional<double> value =
-        derived && entry.of_machine() ? figures::figure_of({&counts}, entry.name) : std::nullopt;
-    if (value) {
+    const std::optional<double> value = figures::figure_of({&counts}, entry.name);
+    if (value && entry.of_machine()) {
       result.figures[entry.name] = *value;
     }
+  }
+  const std::map<std::int64_t, sweep::Advice> advice = store.advice();
+  if (const auto measured = advice.find(point.machine); measured != advice.end()) {
+    result.helps = measured->second.sentence;
+    result.noise = measured->second.noise;
   }
   return result;
 }

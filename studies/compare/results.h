@@ -29,7 +29,8 @@ class Results {
   /// In order, timed or not.
   [[nodiscard]] const std::vector<sweep::StoredPoint>& points() const { return points_; }
 
-  /// A point that has been timed, until the next call. Of a sweep without derived figures unless `derived`.
+  /// A point that has been timed, until the next call. Of a sweep without derived figures, and without what
+  /// helps it, unless `derived`.
   [[nodiscard]] const ComparedResult& at(const sweep::StoredPoint& point, bool derived);
 
   /// Keys and values of a point, timed or not. Of a sweep only.

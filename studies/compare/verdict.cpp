@@ -1,4 +1,5 @@
-#include "studies/compare/verdict.h"
+// What a comparison says in sentences: which is faster, by how much and why.
+#include "studies/compare/comparison.h"
 
 #include <fmt/format.h>
 
