@@ -50,6 +50,7 @@ class Bvh : public Queries<Bvh> {
   [[nodiscard]] std::uint64_t walk_bytes() const;
 
  private:
+  friend class OrderedBvh;  // bvh_order.h
   friend class Queries<Bvh>;
   Bvh() = default;
 

@@ -11,6 +11,7 @@
 #include "accel/bvh_ray.h"
 #include "accel/far_ray.h"
 #include "accel/ray.h"
+#include "accel/visitor.h"
 #include "accel/watertight.h"
 
 namespace marti::accel {
@@ -35,6 +36,13 @@ bool walk_bvh_far_branch(const BvhView<Node>& view, const FarRay& far, std::uint
       }
       met[at] = {span.in, view.first_child(record) + static_cast<std::uint32_t>(c), node.child(c)};
     }
+  }
+  if constexpr (SeesEntered<Visitor>) {
+    EnteredChildren entered;
+    for (std::size_t k = 0; k < count; ++k) {
+      entered.add(met[k].number - view.first_child(record));
+    }
+    visitor.entered(entered);
   }
   for (std::size_t k = 0; k < count; ++k) {
     const BvhWaiting<double>& next = met[k];

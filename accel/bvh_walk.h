@@ -28,6 +28,7 @@
 #include "accel/counted.h"
 #include "accel/octree_start.h"
 #include "accel/ray.h"
+#include "accel/visitor.h"
 #include "accel/watertight.h"
 
 namespace marti::accel {
@@ -129,6 +130,13 @@ bool walk_bvh(const BvhView<Node>& view, const BvhRay<BoxFloat<Real>>& ray, cons
           }
           stack[at] = {in, first + static_cast<std::uint32_t>(c), node.child(c)};
         }
+      }
+      if constexpr (SeesEntered<Visitor>) {
+        EnteredChildren entered;
+        for (std::size_t at = waiting; at-- > begin;) {
+          entered.add(stack[at].number - first);
+        }
+        visitor.entered(entered);
       }
     } else {
       const std::uint32_t before = best.primitive;

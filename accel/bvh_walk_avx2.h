@@ -17,6 +17,7 @@
 
 #include "accel/bvh_nodes.h"
 #include "accel/bvh_ray.h"
+#include "accel/visitor.h"
 #include "accel/watertight.h"
 
 namespace marti::accel {
@@ -153,7 +154,18 @@ template <bool Any, class Node, class Visitor>
           *at = other;
           fetch(view, other.child);
         }
+        if constexpr (SeesEntered<Visitor>) {
+          EnteredChildren entered;
+          entered.add(now.number - first);
+          for (const Waiting* at = top; at != begin;) {
+            entered.add((--at)->number - first);
+          }
+          visitor.entered(entered);
+        }
         continue;
+      }
+      if constexpr (SeesEntered<Visitor>) {
+        visitor.entered({});
       }
     } else {
       const std::uint32_t before = best.primitive;

@@ -2,9 +2,41 @@
 // counting.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 namespace marti::accel {
+
+/// The children of a branch that a ray enters, in the order in which they are visited, as one word: in its
+/// upper four bits how many there are, below, from the lowest bits on, three bits for each with its number
+/// among the branch's children.
+class EnteredChildren {
+ public:
+  static constexpr std::uint32_t most = 8;
+
+  EnteredChildren() = default;
+  explicit EnteredChildren(std::uint32_t word) : word_(word) {}
+
+  void add(std::uint32_t child) {
+    word_ = (word_ | child << (3 * count())) + (std::uint32_t{1} << count_bit);
+  }
+
+  [[nodiscard]] std::uint32_t word() const { return word_; }
+  [[nodiscard]] std::uint32_t count() const { return word_ >> count_bit; }
+  [[nodiscard]] std::uint32_t operator[](std::uint32_t place) const { return (word_ >> (3 * place)) & 7U; }
+
+ private:
+  static constexpr unsigned count_bit = 28;
+
+  std::uint32_t word_ = 0;
+};
+
+/// Visitors of a bounding volume hierarchy that are told, after branch(), which children of it a ray enters.
+/// Not all of them are visited: a hit may turn out to be nearer than the box of one that waits.
+template <class Visitor>
+concept SeesEntered = requires(Visitor& visitor, EnteredChildren children) {
+  { visitor.entered(children) } -> std::same_as<void>;
+};
 
 /// The visitor that does nothing and costs nothing. Others have the same members; mailed_leaf only if they
 /// have mailboxes (mailbox.h).

@@ -26,7 +26,8 @@ constexpr std::array refused = {
     RefusedPair{Feature::contexts, Feature::simt,
                 "the warps of a SIMT node take the place of contexts; set simt.warps"},
     RefusedPair{Feature::prefetch, Feature::simt,
-                "these prefetchers look at one step at a time, and a SIMT node takes many at once"},
+                "these prefetchers look at one step at a time, and a SIMT node takes many at once; "
+                "its own are prefetch.stack and prefetch.treelet"},
     RefusedPair{Feature::building, Feature::simt,
                 "a ray-tracing unit reads a tree and cannot split its branches; build it before the frame"},
     RefusedPair{Feature::distributed, Feature::simt,

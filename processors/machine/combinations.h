@@ -31,7 +31,7 @@ struct FeatureText {
 /// In the order of Feature.
 inline constexpr std::array<FeatureText, features> feature_texts = {{
     {"several contexts", "node.contexts above 1"},
-    {"prefetching", "[prefetch]"},
+    {"prefetching", "prefetch.next_line, prefetch.children"},
     {"building the tree", "build.sharing other than \"given\""},
     {"distributed memory", "database.placement = \"distributed\""},
     {"private second level", "l2.sharing = \"private\""},

@@ -36,6 +36,9 @@ void check_prefetch(const PrefetchConfig& config, accel::Traversal traversal) {
     throw sim::KeyError("prefetch.children",
                         "only an octree, a bsp tree or a bvh has branches with children");
   }
+  if (config.stack > 0 && !accel::walks_bvh(traversal)) {
+    throw sim::KeyError("prefetch.stack", "only the walk of a bvh keeps entries that wait; set it to 0");
+  }
 }
 
 }  // namespace marti::processors::machine

@@ -18,12 +18,20 @@ void check_range(std::string_view key, std::uint32_t value, std::uint32_t least,
   }
 }
 
+// The key by which a machine asks for prefetching into its units.
+std::string key_of_unit(const PrefetchConfig& prefetch) {
+  return prefetch.stack > 0 ? "prefetch.stack" : "prefetch.treelet";
+}
+
 }  // namespace
 
 void check_simt(const MachineConfig& config) {
   if (config.kind == NodeKind::core) {
     if (config.layout.leaf == memory::LeafLayout::inline_records) {
       throw sim::KeyError("layout.leaf", "\"inline\" is for node.kind = \"simt\"; use \"list\"");
+    }
+    if (config.prefetch.into_unit()) {
+      throw sim::KeyError(key_of_unit(config.prefetch), "is for node.kind = \"simt\"; use prefetch.children");
     }
     return;
   }
@@ -43,6 +51,25 @@ void check_simt(const MachineConfig& config) {
                                     {"rt.quadric_cycles", rt.quadric_cycles}}) {
     if (cycles < 0) {
       throw sim::KeyError(key, "must not be negative");
+    }
+  }
+  check_range("prefetch.stack", config.prefetch.stack, 0, most_prefetched_entries);
+  check_range("prefetch.queue", config.prefetch.queue, 1, most_queued_prefetches);
+  if (config.prefetch.into_unit() && rt.warps == 0) {
+    throw sim::KeyError(key_of_unit(config.prefetch),
+                        "is for warps in a ray-tracing unit; set rt.warps to at least 1");
+  }
+  if (config.prefetch.into_unit() && config.placement == Placement::replicated) {
+    throw sim::KeyError(key_of_unit(config.prefetch),
+                        "a node whose own memory has the whole database does not prefetch");
+  }
+  if (config.layout.node_order != memory::NodeOrder::treelets) {
+    const std::string set = "; set layout.node_order = \"treelets\"";
+    if (rt.scheduler == RtScheduler::treelet) {
+      throw sim::KeyError("rt.scheduler", "\"treelet\" needs nodes that lie in treelets" + set);
+    }
+    if (config.prefetch.treelet) {
+      throw sim::KeyError("prefetch.treelet", "needs nodes that lie in treelets" + set);
     }
   }
   if (config.cache.organisation == CacheOrganisation::none) {

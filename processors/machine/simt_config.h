@@ -18,8 +18,9 @@ enum class Reconverge : std::uint8_t { kind, any };
 inline constexpr std::array<std::string_view, 2> reconverge_names = {"kind", "any"};
 
 /// Which warp of the unit may ask for a record next.
-enum class RtScheduler : std::uint8_t { oldest, greedy, round_robin };
-inline constexpr std::array<std::string_view, 3> rt_scheduler_names = {"oldest", "greedy", "round_robin"};
+enum class RtScheduler : std::uint8_t { oldest, greedy, round_robin, treelet };
+inline constexpr std::array<std::string_view, 4> rt_scheduler_names = {"oldest", "greedy", "round_robin",
+                                                                       "treelet"};
 
 /// Whose accesses to the same record become one.
 enum class RtCoalesce : std::uint8_t { none, warp, unit };

@@ -129,7 +129,40 @@ class RowRecorder {
   std::uint32_t* next_ = nullptr;
   std::uint32_t* end_ = nullptr;
   std::vector<std::uint32_t> begin_;
+
+ protected:
   sim::Chunks chunks_;  // of the rows
+};
+
+/// Writes beside the words which children of each branch the rays enter.
+class EnteredRecorder : public RowRecorder {
+ public:
+  void begin_row(std::uint32_t width) {
+    RowRecorder::begin_row(width);
+    entered_.clear();
+    begin_.clear();
+    begin_.reserve(std::size_t{width} + 1);
+  }
+  void begin_pixel() {
+    RowRecorder::begin_pixel();
+    begin_.push_back(static_cast<std::uint32_t>(entered_.size()));
+  }
+  void entered(accel::EnteredChildren children) { entered_.push_back(children.word()); }
+  /// What is to go with the words of copy().
+  void copy_entered(std::span<const std::uint32_t> words) {
+    entered_.insert(entered_.end(), words.begin(), words.end());
+  }
+  void end_row(LogRow& row) {
+    RowRecorder::end_row(row);
+    begin_.push_back(static_cast<std::uint32_t>(entered_.size()));
+    const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
+    row.entered = sim::ChunkVector<std::uint32_t>(entered_.begin(), entered_.end(), chunks);
+    row.entered_begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
+  }
+
+ private:
+  std::vector<std::uint32_t> entered_;
+  std::vector<std::uint32_t> begin_;
 };
 
 }  // namespace marti::processors::program

@@ -78,6 +78,8 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   log.traversal = accel::traversal_of(structure);
   log.integrator = options.integrator;
   log.mailboxes = options.mailboxes;
+  log.order = options.order;
+  log.treelet_records = options.treelet_records;
   log.width = options.width;
   log.height = options.height;
   log.samples = options.samples;
@@ -150,7 +152,9 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   const auto in_doubles = [&](const auto& concrete) {
     render_with<double>(scene, concrete, emitters, options, threads, log.rows, frame);
   };
-  if (options.floats) {
+  if (options.order != accel::WalkOrder::depth_first) {
+    render_in_order(scene, structure, emitters, options, threads, log.rows, frame);
+  } else if (options.floats) {
     render_in_floats(scene, structure, emitters, options, threads, log.rows, frame);
   } else {
     accel::visit_structure(structure, [&](const auto& concrete) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "accel/walk_order.h"
 #include "processors/program/image.h"
 #include "processors/program/pixel_set.h"
 #include "processors/program/work_log.h"
@@ -53,7 +54,13 @@ struct RenderOptions {
   /// False: with mailboxes, this computer looks none of them up although the log says that it did. Only right
   /// where no ray meets a primitive twice; image and log are the same then.
   bool keep_mailboxes = true;
-  bool record = false;  ///< also make the work log
+  /// For a bounding volume hierarchy without mailboxes. The image is that of any order.
+  accel::WalkOrder order = accel::WalkOrder::depth_first;
+  std::uint32_t treelet_records = 0;  ///< with WalkOrder::treelet_first: the most node records of a treelet
+  bool record = false;                ///< also make the work log
+  /// Of a bounding volume hierarchy without mailboxes and walked depth first: the log also has which children
+  /// of each branch a ray entered, four bytes a visit.
+  bool entered = false;
   /// The pixels that are traced; null for all. The others are those of `before`, or else black and without
   /// words in the log. Must be of the image's size.
   const PixelSet* only = nullptr;

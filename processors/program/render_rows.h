@@ -13,6 +13,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "accel/bvh.h"
 #include "accel/mailbox.h"
 #include "accel/structure.h"
 #include "processors/program/recorder.h"
@@ -54,6 +55,9 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
           pixels[x] = options.before->image.at(x, y);
           if constexpr (recording) {
             worker.recorder.copy(options.before->log->pixel(x, y));
+            if constexpr (accel::SeesEntered<Recorder>) {
+              worker.recorder.copy_entered(options.before->log->entered(x, y));
+            }
           }
         }
         continue;
@@ -110,11 +114,21 @@ void render_with(const scenes::Scene& scene, const Structure& structure, const E
   } else if (mailboxes) {
     run(accel::Mailboxed<NullRecorder>());
   } else if (options.record) {
+    if constexpr (std::is_same_v<Structure, accel::Bvh>) {
+      if (options.entered) {
+        run(EnteredRecorder());
+        return;
+      }
+    }
     run(RowRecorder());
   } else {
     run(NullRecorder());
   }
 }
+
+/// render_with() for RenderOptions::order other than depth first.
+void render_in_order(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
+                     const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows, Frame& frame);
 
 /// render_with() for any structure, in floats.
 void render_in_floats(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,

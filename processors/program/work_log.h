@@ -20,6 +20,7 @@
 #include "accel/quadric_shape.h"
 #include "accel/topology.h"
 #include "accel/traversal.h"
+#include "accel/walk_order.h"
 #include "sim/chunks.h"
 
 namespace marti::processors::program {
@@ -126,6 +127,10 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
 struct LogRow {
   sim::ChunkVector<std::uint32_t> words;
   sim::ChunkVector<std::uint32_t> begin;  ///< width + 1 offsets
+  /// Beside the words, where RenderOptions::entered asks for it: of each visit to a branch an
+  /// accel::EnteredChildren, and where those of each pixel begin, width + 1 offsets. Else empty.
+  sim::ChunkVector<std::uint32_t> entered;
+  sim::ChunkVector<std::uint32_t> entered_begin;
 };
 
 /// How much a log holds; also the denominators of bytes per ray and steps per ray.
@@ -153,9 +158,11 @@ struct LogTotals {
 
 /// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
 struct WorkLog {
-  accel::Traversal traversal = accel::Traversal::octree;  ///< the walk that made it
-  Integrator integrator = Integrator::whitted;            ///< the program that made it
-  bool mailboxes = false;  ///< for each entry of a leaf's list, its mailbox was looked up
+  accel::Traversal traversal = accel::Traversal::octree;   ///< the walk that made it
+  Integrator integrator = Integrator::whitted;             ///< the program that made it
+  accel::WalkOrder order = accel::WalkOrder::depth_first;  ///< in which rays took nodes
+  std::uint32_t treelet_records = 0;  ///< with WalkOrder::treelet_first: the most node records of a treelet
+  bool mailboxes = false;             ///< for each entry of a leaf's list, its mailbox was looked up
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t samples = 1;  ///< camera rays of a pixel; each pixel that is logged has all of them
@@ -171,6 +178,14 @@ struct WorkLog {
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
   std::vector<LogRow> rows;                  ///< `height` of them, from the top
 
+  /// Whether it has, of each visit to a branch, the children that the ray entered.
+  [[nodiscard]] bool has_entered() const { return !rows.empty() && !rows.front().entered_begin.empty(); }
+  /// An accel::EnteredChildren for each branch that the pixel's rays visit, in their order; has_entered().
+  [[nodiscard]] std::span<const std::uint32_t> entered(std::uint32_t x, std::uint32_t y) const {
+    const LogRow& row = rows[y];
+    return std::span(row.entered)
+        .subspan(row.entered_begin[x], row.entered_begin[x + 1] - row.entered_begin[x]);
+  }
   [[nodiscard]] std::uint32_t triangles() const {
     return primitives - static_cast<std::uint32_t>(quadrics.size());
   }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "processors/machine/packets.h"
 #include "processors/node/node_array.h"
@@ -15,6 +16,7 @@
 #include "processors/replay/space.h"
 #include "processors/simt/simt_nodes.h"
 #include "processors/walk/left_out.h"
+#include "processors/walk/node_order.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/record_places.h"
 #include "processors/walk/stripped_log.h"
@@ -218,6 +220,19 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
   if (config.kind == machine::NodeKind::simt && log.mailboxes) {
     throw sim::KeyError("node.kind",
                         "\"simt\" does not combine with mailboxes: lanes of many rays are in a leaf at once");
+  }
+  if (log.order == accel::WalkOrder::treelet_first &&
+      (config.layout.node_order != memory::NodeOrder::treelets ||
+       walk::treelet_records(config.layout) != log.treelet_records)) {
+    throw sim::KeyError("layout.treelet",
+                        "the frame was traced with treelets of at most " +
+                            std::to_string(log.treelet_records) +
+                            " nodes, and the machine has others; trace it again (rt.order)");
+  }
+  if (config.prefetch.stack > 0 && !log.has_entered()) {
+    throw sim::KeyError("prefetch.stack",
+                        "the frame was traced without noting which children rays enter, as that of a machine "
+                        "with other nodes is; begin anew with node.kind = \"simt\"");
   }
   if (config.layout.leaf == memory::LeafLayout::inline_records && !accel::walks_bvh(log.traversal)) {
     throw sim::KeyError("layout.leaf", "\"inline\" is for a bvh; use \"list\"");

@@ -32,6 +32,19 @@ bool LaneWalk::node_record(Lane& lane, std::uint32_t node, Test test) const {
   return true;
 }
 
+Record LaneWalk::first_record(std::uint32_t node) const {
+  Lane lane;
+  if (!node_record(lane, node, Test::none)) {
+    const std::uint32_t first = topology_[node].first;
+    const auto kind = lists_ ? memory::RecordKind::list : memory::RecordKind::primitive;
+    lane.record = {input_.layout.address(kind, first),
+                   lists_ ? std::uint64_t{topology_[node].count} * entry_bytes_
+                          : input_.layout.record_bytes(kind, first),
+                   kind, Test::none};
+  }
+  return lane.record;
+}
+
 bool LaneWalk::next_record(Lane& lane, cost::StepCounts& steps) const {
   for (;;) {
     if (lane.list != 0) {

@@ -53,6 +53,9 @@ class LaneWalk {
   /// False when the ray has no further record.
   bool next_record(Lane& lane, cost::StepCounts& steps) const;
 
+  /// The first record that a visit to a node reads which tests all that the node lists.
+  [[nodiscard]] Record first_record(std::uint32_t node) const;
+
   /// Takes the lane's shader steps up to and with its next ray, or to the pixel's end; counts them in
   /// `counts` and calls read(kind, record address, bytes) for each material and texel. True when the lane
   /// holds a ray now.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "memory/record_kind.h"
@@ -19,6 +20,8 @@ class LineRegisters {
 
   struct Register {
     bool left = false;                                   ///< the line was asked for beyond the node
+    bool wanted = false;                                 ///< by more than a prefetch
+    bool prefetched = false;                             ///< it was asked for by one
     std::int64_t asked = 0;                              ///< in this cycle
     memory::RecordKind kind = memory::RecordKind::node;  ///< of the record for which it was asked
     walk::Origin origin{};
@@ -45,11 +48,13 @@ class LineRegisters {
   }
   [[nodiscard]] bool full() const { return used_ == keys_.size(); }
   [[nodiscard]] std::uint32_t used() const { return used_; }
+  /// Of these, whose lines are wanted by more than a prefetch.
+  [[nodiscard]] std::uint32_t wanted() const { return wanted_; }
   /// Of these, whose lines left the node.
   [[nodiscard]] std::uint32_t left() const { return left_; }
 
   /// Takes the lowest free register, of which there must be one.
-  std::uint32_t take(Key key, bool left, std::int64_t cycle) {
+  std::uint32_t take(Key key, bool left, bool prefetched, std::int64_t cycle) {
     std::size_t word = 0;
     while (free_[word] == 0) {
       ++word;
@@ -58,16 +63,31 @@ class LineRegisters {
         static_cast<std::uint32_t>(word * 64 + static_cast<unsigned>(std::countr_zero(free_[word])));
     free_[word] &= free_[word] - 1;
     ++used_;
-    left_ += left ? 1 : 0;
     keys_[number] = key;
     registers_[number].left = left;
+    registers_[number].wanted = false;
+    registers_[number].prefetched = prefetched;
     registers_[number].asked = cycle;
+    if (!prefetched) {
+      want(number);
+    }
     return number;
+  }
+  /// The register's line is wanted by more than a prefetch from now on.
+  void want(std::uint32_t number) {
+    Register& wanted = registers_[number];
+    if (!std::exchange(wanted.wanted, true)) {
+      ++wanted_;
+      left_ += wanted.left ? 1 : 0;
+    }
   }
   void give_back(std::uint32_t number) {
     free_[number / 64] |= std::uint64_t{1} << (number % 64);
     --used_;
-    left_ -= registers_[number].left ? 1 : 0;
+    if (registers_[number].wanted) {
+      --wanted_;
+      left_ -= registers_[number].left ? 1 : 0;
+    }
     keys_[number] = free_key;
     registers_[number].waiters.clear();
   }
@@ -80,6 +100,7 @@ class LineRegisters {
   std::vector<Register> registers_;
   std::vector<std::uint64_t> free_;  // a bit for each register
   std::uint32_t used_ = 0;
+  std::uint32_t wanted_ = 0;
   std::uint32_t left_ = 0;
 };
 

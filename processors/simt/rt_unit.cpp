@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "processors/simt/simt_node.h"
+#include "processors/walk/prefetch_lines.h"
 
 namespace marti::processors::simt {
 
@@ -35,7 +36,7 @@ void SimtNode::leave_and_enter() {
   }
 }
 
-std::optional<std::uint32_t> SimtNode::pick_warp() {
+std::optional<std::uint32_t> SimtNode::pick_warp() const {
   const auto wants = [&](std::uint32_t warp) { return warps_[warp].wants != 0; };
   const machine::RtScheduler scheduler = shared_.input.config.rt.scheduler;
   if (scheduler == machine::RtScheduler::round_robin) {
@@ -66,18 +67,62 @@ std::optional<std::uint32_t> SimtNode::pick_warp() {
   return oldest;
 }
 
+std::optional<SimtNode::Picked> SimtNode::pick_by_treelet() {
+  const auto pick = [&]() -> std::optional<Picked> {
+    for (const std::uint32_t warp : in_unit_) {
+      for (Lanes wants = warps_[warp].wants; wants != 0; wants &= wants - 1) {
+        const auto number = static_cast<std::uint32_t>(std::countr_zero(wants));
+        if (lane_treelet(warp, number) == last_treelet_) {
+          return Picked{warp, number};
+        }
+      }
+    }
+    return std::nullopt;
+  };
+  if (const std::optional<Picked> picked = pick()) {
+    return picked;
+  }
+  wanted_.clear();
+  for (const std::uint32_t warp : in_unit_) {
+    for_each_lane(warps_[warp].wants,
+                  [&](std::uint32_t number) { wanted_.push_back(lane_treelet(warp, number)); });
+  }
+  std::sort(wanted_.begin(), wanted_.end());
+  std::ptrdiff_t most = 0;
+  for (auto first = wanted_.begin(); first != wanted_.end();) {
+    const auto next = std::upper_bound(first, wanted_.end(), *first);
+    if (next - first > most) {
+      most = next - first;
+      last_treelet_ = *first;
+    }
+    first = next;
+  }
+  return pick();
+}
+
+std::optional<SimtNode::Picked> SimtNode::pick_lane() {
+  if (shared_.input.config.rt.scheduler == machine::RtScheduler::treelet) {
+    return pick_by_treelet();
+  }
+  const std::optional<std::uint32_t> warp = pick_warp();
+  if (!warp) {
+    return std::nullopt;
+  }
+  last_slot_ = warps_[*warp].slot;
+  last_entered_ = warps_[*warp].entered;
+  return Picked{*warp, static_cast<std::uint32_t>(std::countr_zero(warps_[*warp].wants))};
+}
+
 bool SimtNode::pick_access() {
-  const std::optional<std::uint32_t> picked = pick_warp();
+  const std::optional<Picked> picked = pick_lane();
   if (!picked) {
     return false;
   }
-  last_slot_ = warps_[*picked].slot;
-  last_entered_ = warps_[*picked].entered;
-  const auto first = static_cast<std::uint32_t>(std::countr_zero(warps_[*picked].wants));
-  const Record record = lane(*picked, first).record;
+  const Lane& first = lane(picked->warp, picked->lane);
+  const Record record = first.record;
   sending_ = accesses_.take();
   Access& access = accesses_[sending_];
-  access = {std::move(access.lanes), record.kind, lane(*picked, first).origin};
+  access = {std::move(access.lanes), record.kind, first.origin};
   access.lanes.clear();
   std::uint64_t bytes = 0;
   const auto join = [&](std::uint32_t number, Lanes candidates) {
@@ -97,15 +142,15 @@ bool SimtNode::pick_access() {
   };
   switch (shared_.input.config.rt.coalesce) {
     case machine::RtCoalesce::none:
-      join(*picked, Lanes{1} << first);
+      join(picked->warp, Lanes{1} << picked->lane);
       break;
     case machine::RtCoalesce::warp:
-      join(*picked, warps_[*picked].wants);
+      join(picked->warp, warps_[picked->warp].wants);
       break;
     case machine::RtCoalesce::unit:
-      join(*picked, warps_[*picked].wants);
+      join(picked->warp, warps_[picked->warp].wants);
       for (const std::uint32_t other : in_unit_) {
-        if (other != *picked) {
+        if (other != picked->warp) {
           join(other, warps_[other].wants);
         }
       }
@@ -190,7 +235,7 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   Warp& warp = warps_[lanes.warp];
   Lanes done = 0;
   for_each_lane(lanes.lanes, [&](std::uint32_t member) {
-    if (!shared_.walk.next_record(lane(lanes.warp, member), statistics_.steps)) {
+    if (!next_record(lanes.warp, member)) {
       done |= Lanes{1} << member;
       end_ray(lanes.warp);
     }
@@ -199,6 +244,84 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   warp.tracing &= ~done;
   time_.move_lanes(from, LaneState::scheduler, count(lanes.lanes & ~done));
   time_.move_lanes(from, LaneState::held, count(done));
+}
+
+void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
+  if (!stacks_.empty()) {
+    stack(warp, number).begin_ray();
+  }
+  if (!lane_treelets_.empty()) {
+    lane_treelet(warp, number) = no_treelet;
+  }
+}
+
+// Takes a lane in the unit, or one that is to enter it, to its next record.
+bool SimtNode::next_record(std::uint32_t warp, std::uint32_t number) {
+  Lane& its = lane(warp, number);
+  const std::uint32_t* const visit = its.word;
+  if (!shared_.walk.next_record(its, statistics_.steps)) {
+    return false;
+  }
+  if (its.word != visit && (!stacks_.empty() || !lane_treelets_.empty())) {
+    follow(warp, number, *visit);
+  }
+  return true;
+}
+
+// A lane goes on with a visit: notes what it wishes for.
+void SimtNode::follow(std::uint32_t warp, std::uint32_t number, std::uint32_t visit) {
+  const std::uint32_t node = program::operand_of(visit);
+  Wish wish = {warps_[warp].entered, number, static_cast<std::uint32_t>(wished_.size())};
+  if (!stacks_.empty()) {
+    stack(warp, number)
+        .visit(shared_.input.log.topology.nodes, node, shared_.input.config.prefetch.stack,
+               [&](std::uint32_t waiting) { wished_.push_back(waiting); });
+  }
+  wish.end = static_cast<std::uint32_t>(wished_.size());
+  if (!lane_treelets_.empty()) {
+    const std::uint32_t before = lane_treelet(warp, number);
+    const std::uint32_t now = program::visits_node(program::step_of(visit)) ? shared_.treelets->of_node[node]
+                              : before == no_treelet                        ? 0
+                                                                            : before;
+    lane_treelet(warp, number) = now;
+    if (shared_.input.config.prefetch.treelet && before != no_treelet && before != now) {
+      wish.treelet = now;
+    }
+  }
+  if (wish.end != wish.first || wish.treelet != no_treelet) {
+    wishes_.push_back(wish);
+  }
+}
+
+// Puts the lines of what the lanes wish for in this cycle into the queue.
+void SimtNode::put_prefetches() {
+  std::sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) {
+    return a.entered != b.entered ? a.entered < b.entered : a.lane < b.lane;
+  });
+  const memory::Layout& layout = shared_.input.layout;
+  const auto put = [&](memory::RecordKind kind, std::uint32_t line) {
+    prefetches_.put({shared_.caches.key(number_, kind, line), line, kind});
+    return true;
+  };
+  for (const Wish& wish : wishes_) {
+    for (std::uint32_t i = wish.first; i < wish.end; ++i) {
+      const Record record = shared_.walk.first_record(wished_[i]);
+      (void)walk::each_line_of(
+          1, static_cast<std::uint32_t>(record.bytes), shared_.unit_shift,
+          [&](std::uint32_t /*number*/) { return std::optional(record.at); },
+          [&](std::uint32_t line) { return put(record.kind, line); });
+    }
+    if (wish.treelet != no_treelet) {
+      const auto kind = memory::RecordKind::node;
+      const std::uint32_t first = shared_.treelets->begin[wish.treelet];
+      (void)walk::each_line_of(
+          shared_.treelets->begin[wish.treelet + 1] - first, layout.record_bytes(kind), shared_.unit_shift,
+          [&](std::uint32_t number) { return std::optional(layout.address(kind, first + number)); },
+          [&](std::uint32_t line) { return put(kind, line); });
+    }
+  }
+  wishes_.clear();
+  wished_.clear();
 }
 
 void SimtNode::end_ray(std::uint32_t warp) {

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "processors/cost/step_time.h"
+#include "processors/walk/node_order.h"
 
 namespace marti::processors::simt {
 
@@ -34,6 +35,10 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
     counting.emplace(replay.config, walk::memory_lines(replay.config, replay.layout, nullptr));
   }
   const machine::RtUnitConfig& rt = replay.config.rt;
+  if (rt.scheduler == machine::RtScheduler::treelet || replay.config.prefetch.treelet) {
+    treelets = accel::treelets_of(replay.log.topology, !accel::walks_bvh(replay.log.traversal),
+                                  walk::treelet_records(replay.config.layout));
+  }
   test_cycles = {0, rt.box_cycles, rt.leaf_cycles, rt.triangle_cycles, rt.quadric_cycles};
 }
 
@@ -48,13 +53,16 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
       registers_(shared.input.config.simt.mshrs),
       live_(shared.input.config.simt.warps),
       without_packet_(live_),
-      last_slot_(machine::most_warps - 1) {}
+      last_slot_(machine::most_warps - 1),
+      prefetches_(shared.input.config.prefetch.queue),
+      stacks_(shared.input.config.prefetch.stack > 0 ? lanes_.size() : 0),
+      lane_treelets_(shared.treelets ? lanes_.size() : 0) {}
 
 void SimtNode::settle(std::int64_t cycle) {
   Quiet quiet = Quiet::idle;
   if (registers_.left() > 0) {
     quiet = Quiet::memory;
-  } else if (registers_.used() > 0 || hits_pending_ > 0) {
+  } else if (registers_.wanted() > 0 || hits_pending_ > 0) {
     quiet = Quiet::cache;
   } else if (tests_running_ > 0) {
     quiet = Quiet::testing;
@@ -132,6 +140,9 @@ void SimtNode::step(std::int64_t cycle) {
     end_test(ending.lanes, ending.from);
   }
   ending_.clear();
+  if (!wishes_.empty()) {
+    put_prefetches();
+  }
   leave_and_enter();
   // Step 5.
   write_out();
@@ -170,6 +181,9 @@ bool SimtNode::end_warp() {
 
 void SimtNode::look_up(std::int64_t cycle) {
   cycle_ = cycle;
+  if (live_ == 0) {
+    return;  // what waits to be prefetched is of no use to anybody
+  }
   bool blocked = false;
   for (std::uint32_t port = 0; port < shared_.input.config.simt.ports && !blocked; ++port) {
     // A line for which there was no register comes before all others.
@@ -189,11 +203,13 @@ void SimtNode::look_up(std::int64_t cycle) {
         readers_.erase(readers_.begin());
         refresh_phase(number);
       }
+    } else if (!prefetches_.empty()) {
+      look_up_prefetch();
     } else {
       break;
     }
   }
-  const bool more = sending_ != no_access || !readers_.empty() ||
+  const bool more = sending_ != no_access || !readers_.empty() || !prefetches_.empty() ||
                     std::any_of(in_unit_.begin(), in_unit_.end(),
                                 [&](std::uint32_t warp) { return warps_[warp].wants != 0; });
   const bool unit = !unit_waiters_.empty() && in_unit_.size() < shared_.input.config.rt.warps;
@@ -206,7 +222,7 @@ void SimtNode::look_up(std::int64_t cycle) {
 
 bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
   const std::uint64_t key = shared_.caches.key(number_, line.kind, line.unit);
-  const auto note = [&](bool hit) {
+  const auto note = [&](bool hit, bool joined) {
     ++(hit ? cost::hits_of(statistics_, line.kind) : cost::misses_of(statistics_, line.kind));
     time_.looked_up(line.kind);
     if (shared_.counting) {
@@ -217,37 +233,62 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
       time_.counts().full_cycles += cycle_ - full_from_;
       full_from_ = no_cycle;
     }
+    prefetches_.look_up(key, hit, joined);
   };
   if (const std::optional<std::uint32_t> under_way = registers_.find(key)) {
     (void)shared_.caches.access(number_, line.kind, line.unit);
     registers_[*under_way].waiters.push_back(waiter);
+    registers_.want(*under_way);
     count_pending(waiter, registers_[*under_way].left);
     ++time_.counts().joined;
-    note(true);
+    note(true, true);
     return true;
   }
   if (registers_.full() && !shared_.caches.holds(number_, line.kind, line.unit)) {
     full_from_ = std::min(full_from_, cycle_);
     return false;
   }
-  const machine::MachineConfig& config = shared_.input.config;
   if (shared_.caches.access(number_, line.kind, line.unit)) {
-    queue_.push(sim::add_ticks(cycle_, std::max<std::int64_t>(1, config.cache.hit_cycles)),
-                {Due::hit, waiter});
+    const std::int64_t hit_cycles = shared_.input.config.cache.hit_cycles;
+    queue_.push(sim::add_ticks(cycle_, std::max<std::int64_t>(1, hit_cycles)), {Due::hit, waiter});
     ++hits_pending_;
     count_pending(waiter, false);
-    note(true);
+    note(true, false);
     return true;
   }
-  const std::optional<sim::Ticks> hit = shared_.behind.second_level_hit(number_, line.unit);
-  const std::uint32_t number = registers_.take(key, !hit, cycle_);
+  note(false, false);
+  const std::uint32_t number = ask_for_line(key, line, false);
   registers_[number].waiters.push_back(waiter);
+  count_pending(waiter, registers_[number].left);
+  return true;
+}
+
+void SimtNode::look_up_prefetch() {
+  const PrefetchQueue::Line line = prefetches_.take();
+  if (registers_.find(line.key) || shared_.caches.holds(number_, line.kind, line.unit)) {
+    return;
+  }
+  if (registers_.full()) {
+    prefetches_.drop();
+    return;
+  }
+  (void)shared_.caches.access(number_, line.kind, line.unit);
+  prefetches_.ask(line.key);
+  if (shared_.counting) {
+    shared_.counting->bring_in(number_, static_cast<std::size_t>(line.key >> 32U), line.unit);
+  }
+  (void)ask_for_line(line.key, {line.unit, line.kind, {}}, true);
+}
+
+// Takes a register for a line that the cache has not held until now, and asks for it behind the cache.
+std::uint32_t SimtNode::ask_for_line(LineRegisters::Key key, const LineRead& line, bool prefetched) {
+  const std::optional<sim::Ticks> hit = shared_.behind.second_level_hit(number_, line.unit);
+  const std::uint32_t number = registers_.take(key, !hit, prefetched, cycle_);
   registers_[number].kind = line.kind;
   registers_[number].origin = line.origin;
-  count_pending(waiter, !hit);
-  note(false);
+  const machine::MachineConfig& config = shared_.input.config;
   if (hit) {
-    if (shared_.counting) {
+    if (shared_.counting && !prefetched) {
       shared_.counting->second_level_hit(line.kind, line.origin);
     }
     queue_.push(cycle_ + std::max<std::int64_t>(1, shared_.cycle_at(*hit)), {Due::line, number});
@@ -258,7 +299,7 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
   } else {
     reads.push_back({number, memory::Address{line.unit} << shared_.unit_shift, config.reference_bytes()});
   }
-  return true;
+  return number;
 }
 
 void SimtNode::count_pending(std::uint32_t waiter, bool left) {
@@ -304,7 +345,8 @@ void SimtNode::line_there(std::uint32_t waiter, bool left) {
 void SimtNode::arrives(std::uint32_t number, const memory::Service& service, std::int64_t known) {
   const std::int64_t there = shared_.cycle_at(service.done);
   queue_.push(std::max({there, registers_[number].asked + 1, known + 1}), {Due::line, number});
-  if (shared_.counting) {
+  last_arrival_ = std::max(last_arrival_, service.done);
+  if (shared_.counting && !registers_[number].prefetched) {
     shared_.counting->wait(registers_[number].kind, registers_[number].origin, service);
   }
   read_parts_[0] += service.wait_interconnect;
@@ -314,7 +356,8 @@ void SimtNode::arrives(std::uint32_t number, const memory::Service& service, std
 }
 
 std::size_t SimtNode::bytes() const {
-  return sizeof(SimtNode) + warps_.size() * sizeof(Warp) + lanes_.size() * sizeof(Lane);
+  return sizeof(SimtNode) + warps_.size() * sizeof(Warp) + lanes_.size() * sizeof(Lane) +
+         stacks_.size() * sizeof(LaneStack);
 }
 
 }  // namespace marti::processors::simt

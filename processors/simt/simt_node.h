@@ -8,12 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "accel/record_order.h"
 #include "memory/interconnect.h"
 #include "processors/simt/cycle_queue.h"
+#include "processors/simt/lane_stack.h"
 #include "processors/simt/lane_walk.h"
 #include "processors/simt/line_registers.h"
 #include "processors/simt/node_time.h"
 #include "processors/simt/pool.h"
+#include "processors/simt/prefetch_queue.h"
 #include "processors/simt/rt_unit.h"
 #include "processors/simt/sector_caches.h"
 #include "processors/simt/warp.h"
@@ -35,6 +38,7 @@ struct SimtShared {
   LaneWalk walk;
   SectorCaches caches;
   walk::BehindCache behind;
+  std::optional<accel::Treelets> treelets{};      ///< where the scheduler or prefetching rests on them
   std::optional<walk::CacheCounting> counting{};  ///< where it is asked for
   std::array<std::int64_t, shader_steps> shader_cycles{};
   std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
@@ -78,6 +82,7 @@ class SimtNode {
   void expect_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
   /// No packet is left for the warp. True when none is left for the node.
   bool end_warp();
+  [[nodiscard]] bool finished() const { return live_ == 0; }
   /// The line of a register arrives, which became known in cycle `known`, or before the next.
   void arrives(std::uint32_t number, const memory::Service& service, std::int64_t known);
   /// The write that was held may find room from a cycle on.
@@ -95,6 +100,10 @@ class SimtNode {
   [[nodiscard]] NodeTime& time() { return time_; }
   /// The sums of the parts of all reads beyond the node.
   [[nodiscard]] const std::array<sim::Sum, 4>& read_parts() const { return read_parts_; }
+  /// When the last line that it asked for beyond the node arrives.
+  [[nodiscard]] sim::Ticks last_arrival() const { return last_arrival_; }
+  /// What became of its prefetches.
+  [[nodiscard]] walk::ContextCounts prefetches() const { return prefetches_.counts(); }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -103,6 +112,13 @@ class SimtNode {
 
   Lane& lane(std::uint32_t warp, std::uint32_t number) {
     return lanes_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
+  }
+
+  LaneStack& stack(std::uint32_t warp, std::uint32_t number) {
+    return stacks_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
+  }
+  std::uint32_t& lane_treelet(std::uint32_t warp, std::uint32_t number) {
+    return lane_treelets_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
   }
 
   void set_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
@@ -128,15 +144,28 @@ class SimtNode {
   // rt_unit.cpp: warps in the unit.
   void leave_and_enter();
   bool pick_access();
-  [[nodiscard]] std::optional<std::uint32_t> pick_warp();
+  /// A lane that wants a record, and its warp.
+  struct Picked {
+    std::uint32_t warp = 0;
+    std::uint32_t lane = 0;
+  };
+  [[nodiscard]] std::optional<Picked> pick_lane();
+  [[nodiscard]] std::optional<std::uint32_t> pick_warp() const;
+  [[nodiscard]] std::optional<Picked> pick_by_treelet();
   void sent(Access& access);
   void complete(std::uint32_t number);
   void begin_test(const WarpLanes& lanes, Test test, LaneState from);
   void begin_waiting_tests();
   void end_test(const WarpLanes& lanes, LaneState from);
+  void begin_ray(std::uint32_t warp, std::uint32_t number);
+  bool next_record(std::uint32_t warp, std::uint32_t number);
+  void follow(std::uint32_t warp, std::uint32_t number, std::uint32_t visit);
+  void put_prefetches();
 
   // Lines.
   bool look_up_line(std::uint32_t waiter, const LineRead& line);
+  void look_up_prefetch();
+  std::uint32_t ask_for_line(LineRegisters::Key key, const LineRead& line, bool prefetched);
   void line_there(std::uint32_t waiter, bool left);
   void count_pending(std::uint32_t waiter, bool left);
 
@@ -160,6 +189,7 @@ class SimtNode {
   std::int64_t hits_pending_ = 0;         // lines that are there later, from the first level
   std::int64_t tests_running_ = 0;
   std::int64_t full_from_ = no_cycle;  // since when a look-up finds no register
+  sim::Ticks last_arrival_ = 0;
 
   std::vector<Slot> slots_;                  // in the order in which they were taken
   std::vector<std::uint32_t> slot_waiters_;  // warps, in the order in which they are served
@@ -187,6 +217,25 @@ class SimtNode {
     LaneState from = LaneState::box;
   };
   std::vector<Ending> ending_;  // tests that end in this cycle
+
+  // Prefetching into the unit.
+  struct Wish {
+    std::uint64_t entered = 0;  // of the lane's warp
+    std::uint32_t lane = 0;
+    std::uint32_t first = 0;  // of wished_
+    std::uint32_t end = 0;
+    std::uint32_t treelet = no_treelet;
+  };
+  static constexpr std::uint32_t no_treelet = ~std::uint32_t{0};
+  PrefetchQueue prefetches_;
+  std::vector<LaneStack> stacks_;      // of each lane of each warp; empty without stack prefetch
+  std::vector<Wish> wishes_;           // of this cycle
+  std::vector<std::uint32_t> wished_;  // nodes of the tree
+
+  // Treelets.
+  std::vector<std::uint32_t> lane_treelets_;  // of the record that each lane of each warp wants or has
+  std::uint32_t last_treelet_ = no_treelet;   // that the scheduler picked
+  std::vector<std::uint32_t> wanted_;         // one for each lane that wants a record: its treelet
   std::vector<std::uint32_t> completed_;
 };
 

@@ -104,6 +104,9 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
 
   void finish() override {
     const sim::Ticks period = input_.config.clock.period();
+    for (const SimtNode& node : nodes_) {
+      end_ = std::max(end_, node.last_arrival());
+    }
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
       cost::NodeStatistics& statistics = statistics_[node];
       nodes_[node].settle(statistics.finish / period);
@@ -130,6 +133,15 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
   walk::SecondLevelResult second_level() const override { return shared_.behind.second_level().result(); }
   walk::CacheCountResult cache_counts() const override {
     return shared_.counting ? shared_.counting->result() : walk::CacheCountResult{};
+  }
+  walk::ContextResult context_result() const override {
+    walk::ContextResult result;
+    if (input_.config.prefetch.into_unit()) {
+      for (const SimtNode& node : nodes_) {
+        result.nodes.push_back(node.prefetches());
+      }
+    }
+    return result;
   }
   walk::SimtResult simt_result() const override {
     walk::SimtResult result;
@@ -167,8 +179,12 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
       post(EventClass::step, time, node);
     }
   }
-  // Posts an event for the next cycle in which something is due.
+  // Posts an event for the next cycle in which something is due. To a node that is finished only lines come
+  // that it has prefetched.
   void plan(std::uint32_t node) {
+    if (nodes_[node].finished()) {
+      return;
+    }
     if (const std::int64_t cycle = nodes_[node].next_cycle(); cycle != no_cycle) {
       wake(node, cycle);
     }
@@ -182,8 +198,8 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
   }
 
   void step(std::uint32_t node) {
-    if (engine_.now() != wakes_[node]) {
-      return;  // an earlier wake took its place
+    if (engine_.now() != wakes_[node] || nodes_[node].finished()) {
+      return;  // an earlier wake took its place, or the node has nothing more to do
     }
     wakes_[node] = never_wakes;
     nodes_[node].step(this_cycle());

@@ -62,8 +62,12 @@ void SimtNode::begin_turn(std::uint32_t number) {
   warp.rays = 0;
   for (std::uint32_t i = 0; i < with_pixel; ++i) {
     const std::uint32_t pixel = first + i;
-    shared_.walk.begin_pixel(lane(number, i), warp.packet.x0 + pixel % columns,
-                             warp.packet.y0 + pixel / columns);
+    const std::uint32_t x = warp.packet.x0 + pixel % columns;
+    const std::uint32_t y = warp.packet.y0 + pixel / columns;
+    shared_.walk.begin_pixel(lane(number, i), x, y);
+    if (!stacks_.empty()) {
+      stack(number, i).begin_pixel(shared_.input.log.entered(x, y));
+    }
   }
   time_.add_lanes(LaneState::held, with_pixel);
   time_.add_lanes(LaneState::empty, lanes - with_pixel);
@@ -294,7 +298,8 @@ void SimtNode::begin_trace(std::uint32_t number) {
     }
   } else {
     for_each_lane(warp.picked, [&](std::uint32_t member) {
-      if (shared_.walk.next_record(lane(number, member), statistics_.steps)) {
+      begin_ray(number, member);
+      if (next_record(number, member)) {
         warp.tracing |= Lanes{1} << member;
       }
     });

@@ -1,130 +1,24 @@
 #include "processors/walk/node_order.h"
 
 #include <algorithm>
-#include <cstddef>
 
 namespace marti::processors::walk {
 
-namespace {
-
-// Numbers records, one branch's children at a time.
-class Ranks {
- public:
-  Ranks(const accel::Topology& topology, bool leaf_records)
-      : topology_(topology), leaf_records_(leaf_records), ranks_(topology.nodes.size(), no_record) {
-    if (!ranks_.empty()) {
-      place(0);
-    }
-  }
-
-  [[nodiscard]] std::uint32_t children_with_records(std::uint32_t branch) const {
-    const accel::TopologyNode& node = topology_.nodes[branch];
-    std::uint32_t count = 0;
-    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      count += has_record(child) ? 1 : 0;
-    }
-    return count;
-  }
-  void place_children(std::uint32_t branch) {
-    const accel::TopologyNode& node = topology_.nodes[branch];
-    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      place(child);
-    }
-  }
-  /// Appends the children of a branch that are branches, in order.
-  void append_branches(std::uint32_t branch, std::vector<std::uint32_t>& list) const {
-    const accel::TopologyNode& node = topology_.nodes[branch];
-    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      if (!topology_.nodes[child].leaf) {
-        list.push_back(child);
-      }
-    }
-  }
-  /// The root alone, if it is a branch.
-  [[nodiscard]] std::vector<std::uint32_t> root() const {
-    return ranks_.empty() || topology_.nodes[0].leaf ? std::vector<std::uint32_t>{}
-                                                     : std::vector<std::uint32_t>{0};
-  }
-  [[nodiscard]] std::vector<std::uint32_t> take() { return std::move(ranks_); }
-
- private:
-  [[nodiscard]] bool has_record(std::uint32_t node) const {
-    return leaf_records_ || !topology_.nodes[node].leaf;
-  }
-  void place(std::uint32_t node) {
-    if (has_record(node)) {
-      ranks_[node] = next_++;
-    }
-  }
-
-  const accel::Topology& topology_;
-  bool leaf_records_;
-  std::vector<std::uint32_t> ranks_;
-  std::uint32_t next_ = 0;
-};
-
-}  // namespace
-
-std::vector<std::uint32_t> breadth_first_rank(const accel::Topology& topology, bool leaf_records) {
-  Ranks ranks(topology, leaf_records);
-  for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
-    if (!topology.nodes[node].leaf) {
-      ranks.place_children(node);
-    }
-  }
-  return ranks.take();
-}
-
-std::vector<std::uint32_t> depth_first_rank(const accel::Topology& topology, bool leaf_records) {
-  Ranks ranks(topology, leaf_records);
-  std::vector<std::uint32_t> pending = ranks.root();
-  while (!pending.empty()) {
-    const std::uint32_t branch = pending.back();
-    pending.pop_back();
-    ranks.place_children(branch);
-    const auto below = static_cast<std::ptrdiff_t>(pending.size());
-    ranks.append_branches(branch, pending);
-    std::reverse(pending.begin() + below, pending.end());
-  }
-  return ranks.take();
-}
-
-std::vector<std::uint32_t> treelet_rank(const accel::Topology& topology, bool leaf_records,
-                                        std::uint32_t most) {
-  Ranks ranks(topology, leaf_records);
-  std::vector<std::uint32_t> tops = ranks.root();
-  std::uint32_t used = 1;  // the first treelet has the root's record
-  while (!tops.empty()) {
-    std::vector<std::uint32_t> treelet = {tops.back()};
-    tops.pop_back();
-    std::size_t taken = 0;
-    for (; taken < treelet.size(); ++taken) {
-      const std::uint32_t records = ranks.children_with_records(treelet[taken]);
-      if (used != 0 && std::uint64_t{used} + records > most) {
-        break;
-      }
-      used += records;
-      ranks.place_children(treelet[taken]);
-      ranks.append_branches(treelet[taken], treelet);
-    }
-    tops.insert(tops.end(), treelet.rbegin(), treelet.rend() - static_cast<std::ptrdiff_t>(taken));
-    used = 0;
-  }
-  return ranks.take();
+std::uint32_t treelet_records(const memory::LayoutConfig& layout) {
+  return std::max(1U, static_cast<std::uint32_t>(layout.treelet_bytes / layout.node_stride()));
 }
 
 std::vector<std::uint32_t> node_rank(const accel::Topology& topology, bool leaf_records,
                                      const memory::LayoutConfig& layout) {
   switch (layout.node_order) {
     case memory::NodeOrder::breadth_first:
-      return leaf_records ? std::vector<std::uint32_t>{} : breadth_first_rank(topology, leaf_records);
+      return leaf_records ? std::vector<std::uint32_t>{} : accel::breadth_first_rank(topology, leaf_records);
     case memory::NodeOrder::depth_first:
-      return depth_first_rank(topology, leaf_records);
+      return accel::depth_first_rank(topology, leaf_records);
     case memory::NodeOrder::treelets:
       break;
   }
-  const std::uint64_t most = layout.treelet_bytes / layout.node_stride();
-  return treelet_rank(topology, leaf_records, std::max(1U, static_cast<std::uint32_t>(most)));
+  return accel::treelets_of(topology, leaf_records, treelet_records(layout)).rank;
 }
 
 }  // namespace marti::processors::walk

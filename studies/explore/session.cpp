@@ -110,7 +110,8 @@ std::optional<std::string> key_of(const std::string& message, const sim::Schema&
 
 bool is_control(const sim::Key& key) {
   const std::string_view section = std::string_view(key.name).substr(0, key.name.find('.'));
-  return std::ranges::find(no_controls, section) == no_controls.end();
+  // rt.order is of the frame, which is traced already.
+  return std::ranges::find(no_controls, section) == no_controls.end() && key.name != "rt.order";
 }
 
 Session::Session(const std::filesystem::path& file, std::vector<std::string> assignments,

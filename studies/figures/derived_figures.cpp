@@ -156,6 +156,14 @@ void add_memory(std::vector<FigureEntry>& all) {
   }
   add("l2_misses_a_thousand_steps", "1", "of the second level, for a thousand steps of all nodes",
       Better::lower, own("l2_misses") / thousand_steps);
+  const Formula useful = own("contexts_useful");
+  add("prefetch_accuracy", "fraction", "of the lines prefetched, those that were of use", Better::higher,
+      useful / own("contexts_issued"));
+  add("prefetch_lateness", "fraction", "of the prefetched lines of use, those that were still under way",
+      Better::lower, own("contexts_late") / useful);
+  add("prefetch_coverage", "fraction",
+      "of the lines that would have missed but for prefetching, those that it had brought", Better::higher,
+      useful / (useful + own("misses")));
   const Formula end = own("end");
   const auto of_links = [&end](const std::string& what) {
     return own("most_" + what + "_busy") / (end * (own(what + "_links") / own("clusters")));

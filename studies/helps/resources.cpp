@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "accel/visitor.h"
+
 namespace marti::studies::helps {
 
 namespace {
@@ -125,6 +127,8 @@ void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<
     return;
   }
   resources.push_back(more(changer, Part::nodes, "rt.warps", machine.simt.warps));
+  // As many entries as a branch has children. Only a bvh has stacks; the change is refused with others.
+  resources.push_back(more(changer, Part::caches, "prefetch.stack", accel::EnteredChildren::most));
   for (const auto& [key, units] :
        {std::pair{"rt.box_units", machine.rt.box_units}, {"rt.triangle_units", machine.rt.triangle_units}}) {
     if (units > 0) {

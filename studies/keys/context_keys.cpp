@@ -1,11 +1,47 @@
 #include <string>
+#include <string_view>
 
+#include "accel/walk_order.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_sections.h"
 
 namespace marti::studies::keys {
 
 namespace {
+
+// What is prefetched into a ray-tracing unit.
+void read_unit_prefetch(sim::Config& config, const processors::machine::MachineConfig& machine,
+                        processors::machine::PrefetchConfig& prefetch) {
+  if (machine.kind == processors::machine::NodeKind::core) {
+    for (const std::string_view key : {"prefetch.stack", "prefetch.treelet", "prefetch.queue"}) {
+      config.mark_unused_reason(key, "only node.kind = \"simt\" has a ray-tracing unit", "node.kind");
+    }
+    return;
+  }
+  prefetch.stack = count(config, "prefetch.stack");
+  prefetch.treelet = config.boolean("prefetch.treelet");
+  if (prefetch.treelet && machine.layout.node_order != memory::NodeOrder::treelets) {
+    config.fail("prefetch.treelet", "needs nodes that lie in treelets; set layout.node_order = \"treelets\"");
+  }
+  if (prefetch.into_unit() && machine.rt.warps == 0) {
+    config.fail(prefetch.stack > 0 ? "prefetch.stack" : "prefetch.treelet",
+                "is for warps in a ray-tracing unit; set rt.warps to at least 1");
+  }
+  if (const std::string& structure = config.choice_name("structure.kind");
+      prefetch.stack > 0 && structure != "bvh") {
+    config.fail("prefetch.stack", "must be 0 with structure.kind = \"" + structure +
+                                      "\": only the walk of a bvh keeps entries that wait");
+  }
+  if (prefetch.stack > 0 && config.choice_as<accel::WalkOrder>("rt.order") != accel::WalkOrder::depth_first) {
+    config.fail("prefetch.stack", "must be 0 with rt.order = \"" + config.choice_name("rt.order") +
+                                      "\": only rays that go depth first take entries from a stack");
+  }
+  if (prefetch.into_unit()) {
+    prefetch.queue = count(config, "prefetch.queue");
+  }
+  config.mark_unused_reason(
+      "prefetch.queue", "nothing is prefetched without prefetch.stack or prefetch.treelet", "prefetch.stack");
+}
 
 void read_prefetch(sim::Config& config, processors::machine::MachineConfig& machine) {
   if (machine.cache.organisation == processors::machine::CacheOrganisation::none) {
@@ -30,6 +66,7 @@ void read_prefetch(sim::Config& config, processors::machine::MachineConfig& mach
     config.mark_unused_reason("prefetch.outstanding",
                               "nothing is prefetched without prefetch.next_line or prefetch.children",
                               "prefetch.next_line");
+    read_unit_prefetch(config, machine, prefetch);
   }
 }
 
@@ -52,6 +89,14 @@ void declare_prefetch_keys(sim::Schema& schema) {
                  "a visit to a branch also fetches the records of its children that are not there");
   schema.integer("prefetch.outstanding", 4, {1, processors::machine::most_contexts}, "",
                  "most prefetches a node has under way; further ones are dropped");
+  schema.integer("prefetch.stack", 0, {0, processors::machine::most_prefetched_entries}, "",
+                 "SIMT nodes, bvh: a lane that takes an entry from its stack also fetches the records of so "
+                 "many entries below it");
+  schema.boolean("prefetch.treelet", false,
+                 "SIMT nodes, layout.node_order = \"treelets\": a lane that comes to another treelet also "
+                 "fetches all of its nodes");
+  schema.integer("prefetch.queue", 32, {1, processors::machine::most_queued_prefetches}, "",
+                 "SIMT nodes: lines that wait to be fetched so; further ones are dropped");
 }
 
 void read_contexts(sim::Config& config, processors::machine::MachineConfig& machine) {

@@ -8,8 +8,11 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <variant>
 #include <vector>
 
+#include "memory/layout.h"
+#include "processors/walk/node_order.h"
 #include "sim/mapped.h"
 #include "sim/shown.h"
 #include "sim/units.h"
@@ -70,6 +73,36 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
     how += " and structure.grid_resolution = \"" + config.choice_name("structure.grid_resolution") + "\"";
   }
   config.mark_unused_reason("structure", "it has no effect with " + how, "structure.kind");
+}
+
+// What the frame depends on if it is for SIMT nodes and of a bvh. All machines that are tried on its log may
+// prefetch what waits on stacks then.
+void read_for_units(sim::Config& config, FrameConfig& frame) {
+  const auto value = [&](std::string_view key) -> std::string {
+    const std::optional<std::size_t> index = config.schema().find(key);
+    return index ? std::get<std::string>(config.values_at(*index).front()) : "";
+  };
+  if (value("node.kind") != "simt" || frame.structure != "bvh") {
+    return;
+  }
+  processors::program::RenderOptions& render = frame.render;
+  render.entered = true;
+  if (value("rt.order") == accel::walk_order_names.front()) {
+    return;  // it is read with the machine, so that the frame is that of other nodes, too
+  }
+  render.order = config.choice_as<accel::WalkOrder>("rt.order");
+  if (render.order == accel::WalkOrder::treelet_first) {
+    if (config.choice_as<memory::NodeOrder>("layout.node_order") != memory::NodeOrder::treelets) {
+      config.fail("rt.order",
+                  "\"treelet_first\" needs nodes that lie in treelets; set layout.node_order = \"treelets\"");
+    }
+    memory::LayoutConfig layout;
+    layout.node_bytes = accel::bvh_record_bytes(frame.structure_options.bvh.node);
+    layout.record_alignment =
+        std::max(1U, static_cast<std::uint32_t>(config.size("layout.record_alignment")));
+    layout.treelet_bytes = static_cast<std::uint32_t>(config.size("layout.treelet"));
+    render.treelet_records = processors::walk::treelet_records(layout);
+  }
 }
 
 }  // namespace
@@ -285,6 +318,7 @@ FrameConfig read_frame(sim::Config& config) {
                               "image.voxel_cut");
   }
   read_structure(config, frame);
+  read_for_units(config, frame);
   frame.memory = read_memory(config);
   give_memory(frame.memory, frame.structure_options);
   frame.open.file.memory = frame.memory;

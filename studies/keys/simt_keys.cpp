@@ -1,5 +1,6 @@
 #include <string>
 
+#include "accel/walk_order.h"
 #include "sim/config_errors.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_sections.h"
@@ -31,9 +32,17 @@ void declare_simt_keys(sim::Schema& schema) {
   schema.section("rt", "the ray-tracing unit of a SIMT node");
   schema.integer("rt.warps", 4, {0, most_warps}, "",
                  "warps in the unit at once; 0: there is no unit, and rays are traced by shader code");
-  schema.choice("rt.scheduler", "oldest", names(processors::machine::rt_scheduler_names),
-                "which warp asks for a record next; oldest: the one that entered first; greedy: the one that "
-                "asked last, then the oldest; round_robin: by turns");
+  schema.choice(
+      "rt.scheduler", "oldest", names(processors::machine::rt_scheduler_names),
+      "which warp asks for a record next; oldest: the one that entered first; greedy: the one that "
+      "asked last, then the oldest; round_robin: by turns; treelet (layout.node_order = \"treelets\"): one "
+      "with a lane in the treelet of the last record, else in that of most lanes");
+  schema.choice(
+      "rt.order", "depth_first", names(accel::walk_order_names),
+      "bvh: which of the nodes that a ray has entered it takes next; depth_first: the nearest child "
+      "of its last one, then what it entered last; breadth_first: what it entered first; "
+      "treelet_first (layout.node_order = \"treelets\"): depth first in the present treelet, then "
+      "in others; the frame is traced so, and its image is the same");
   schema.choice("rt.coalesce", "warp", names(processors::machine::rt_coalesce_names),
                 "which lanes that want the same record share one access: none, those of a warp, or of the "
                 "whole unit");
@@ -73,6 +82,11 @@ void read_simt(sim::Config& config, processors::machine::MachineConfig& machine)
   simt.ports = count(config, "cache.ports");
   simt.mshrs = count(config, "cache.mshrs");
   simt.sector = static_cast<std::uint32_t>(config.size("cache.sector"));
+  if (config.choice_name("structure.kind") == "bvh") {
+    (void)config.choice_name("rt.order");  // frame_keys.cpp: the frame has what it says
+  } else {
+    config.mark_unused_reason("rt.order", "only a bvh can be walked in other orders", "structure.kind");
+  }
   processors::machine::RtUnitConfig& rt = machine.rt;
   rt.warps = count(config, "rt.warps");
   rt.coalesce = config.choice_as<processors::machine::RtCoalesce>("rt.coalesce");

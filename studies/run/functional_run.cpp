@@ -47,7 +47,9 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   const processors::program::Frame frame = processors::program::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;
-  const double bytes = frames * static_cast<double>(processors::program::totals_of(*frame.log).bytes) /
+  const processors::program::LogTotals totals = processors::program::totals_of(*frame.log);
+  const std::uint64_t entered = frame.log->has_entered() ? totals.branches * sizeof(std::uint32_t) : 0;
+  const double bytes = frames * static_cast<double>(totals.bytes + entered) /
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
                            config.render.samples * 2.0 +
                        frames * pixels * sizeof(glm::vec3);

@@ -79,7 +79,7 @@ std::string context_lines(const run::RunResult& r) {
                    r.machine.contexts, tables::grouped(r.count("contexts_switches")),
                    tables::grouped(r.count("contexts_joined")));
   }
-  if (r.machine.prefetch.on()) {
+  if (r.machine.prefetch.on() || r.machine.prefetch.into_unit()) {
     const std::optional<double> useful = sim::ratio(r.count("contexts_useful"), r.count("contexts_issued"));
     fmt::format_to(out, "prefetch      {} lines, {} of them useful, {} waits for one under way, {} dropped\n",
                    tables::grouped(r.count("contexts_issued")), useful ? tables::percent(*useful) : "-",

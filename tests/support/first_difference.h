@@ -64,6 +64,8 @@ class FirstDifference {
     });
     list("simt", a.simt.nodes, b.simt.nodes,
          [&](const std::string& name, const auto& x, const auto& y) { counters(name, x, y); });
+    list("prefetches", a.contexts.nodes, b.contexts.nodes,
+         [&](const std::string& name, const auto& x, const auto& y) { counters(name, x, y); });
     list("clusters", a.clusters, b.clusters, [&](const std::string& name, const auto& x, const auto& y) {
       counters(name, x.interconnect, y.interconnect);
       waits(name + ".waits", x.interconnect.waits, y.interconnect.waits);

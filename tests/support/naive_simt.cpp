@@ -15,6 +15,7 @@
 #include "processors/walk/local_memory.h"
 #include "processors/walk/node_caches.h"
 #include "sim/engine.h"
+#include "tests/support/naive_prefetch.h"
 #include "tests/support/naive_simt_log.h"
 #include "tests/support/naive_tags.h"
 
@@ -31,8 +32,9 @@ constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 // A line on its way to the lanes that looked it up.
 struct Line {
   Cycle there = never;
-  bool left = false;  // the node, to bring it
-  bool came = false;  // step 2 of a cycle has seen it
+  bool left = false;   // the node, to bring it
+  bool wanted = true;  // a look-up waits for it, not only a prefetch
+  bool came = false;   // step 2 of a cycle has seen it
 };
 using Lines = std::vector<std::shared_ptr<Line>>;
 
@@ -59,6 +61,7 @@ struct Lane {
   bool pixel = false;  // in this turn
   std::size_t number = 0;
   std::span<const std::uint32_t> words;
+  std::span<const std::uint32_t> entered;  // of the branches whose visits come next
   std::size_t next = 0;
   std::optional<std::uint32_t> ray;  // the operand of the `ray` step whose visits come next
   bool picked = false;
@@ -105,8 +108,7 @@ struct Warp {
 
 struct Register {
   std::shared_ptr<Line> line;  // null: free
-  std::size_t cache = 0;
-  std::uint64_t number = 0;
+  NaiveLine number;
   Cycle asked = 0;
 };
 
@@ -121,11 +123,13 @@ struct Node {
   std::vector<NaiveTags> caches;
   std::vector<NaiveTags> second;  // one, or none
   memory::CacheCounters second_counts;
+  NaivePrefetch prefetch{0};
   std::vector<Register> registers;
   Lines coming;                                  // by no register
   std::vector<std::optional<std::size_t>> unit;  // the warp in each slot
   std::uint64_t entries = 0;
   std::optional<std::size_t> picked_warp;
+  std::optional<std::uint32_t> picked_treelet;
   std::size_t next_slot = 0;
   std::vector<std::shared_ptr<Reading>> accesses;  // not complete
   std::shared_ptr<Reading> sending;
@@ -165,6 +169,7 @@ class NaiveSimt final : public sim::EventHandler {
       if (machine.l2.sharing == SecondLevel::private_caches) {
         node.second.emplace_back(second_level_cache(machine), number);
       }
+      node.prefetch = NaivePrefetch(machine.prefetch.queue);
       node.registers.resize(machine.simt.mshrs);
       node.unit.resize(machine.rt.warps);
       node.buffer.resize(machine.write_buffer);
@@ -197,6 +202,9 @@ class NaiveSimt final : public sim::EventHandler {
       divide_memory(node);
       result.nodes.push_back(node.statistics);
       result.simt.nodes.push_back(node.counts);
+      if (machine_.prefetch.stack > 0 || machine_.prefetch.treelet) {
+        result.contexts.nodes.push_back(node.prefetch.counts());
+      }
       if (!node.second.empty()) {
         result.l2.caches.push_back(node.second_counts);
       }
@@ -371,6 +379,7 @@ class NaiveSimt final : public sim::EventHandler {
   }
 
   void end_tests(Node& node) {
+    std::map<std::pair<std::uint64_t, std::size_t>, const NaiveVisit*> wishing;
     for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
       if (lane.in == Lane::In::tests && lane.ends <= node.cycle) {
         ++lane.at;
@@ -378,9 +387,26 @@ class NaiveSimt final : public sim::EventHandler {
         if (lane.at == lane.visits.size()) {
           lane.in = Lane::In::done;
           count_ray(node, warp);
+        } else {
+          wishing[{warp.entered, lane.number}] = &lane.visits[lane.at];
         }
       }
     });
+    for (const auto& [of, visit] : wishing) {
+      for (const std::vector<NaiveRecord>& item : visit->wishes) {
+        std::deque<LookUp> lines;
+        for (const NaiveRecord& record : item) {
+          read_lines(record, lines);
+        }
+        std::optional<std::uint64_t> before;  // records that follow each other may share a line
+        for (const LookUp& line : lines) {
+          if (before != line.line) {
+            node.prefetch.wish(line.kind, line_of(node, line));
+          }
+          before = line.line;
+        }
+      }
+    }
   }
 
   static void count_ray(Node& node, const Warp& warp) {
@@ -524,6 +550,9 @@ class NaiveSimt final : public sim::EventHandler {
       if (pixel < warp.pixels.size()) {
         warp.lanes[number].pixel = true;
         warp.lanes[number].words = log_.pixel(warp.pixels[pixel].first, warp.pixels[pixel].second);
+        if (log_.has_entered()) {
+          warp.lanes[number].entered = log_.entered(warp.pixels[pixel].first, warp.pixels[pixel].second);
+        }
         lanes.push_back(number);
       }
     }
@@ -689,7 +718,7 @@ class NaiveSimt final : public sim::EventHandler {
       lane.visits.clear();
       lane.at = 0;
       if (lane.picked) {
-        lane.visits = program_.visits(lane.words, lane.next, node.statistics.steps);
+        lane.visits = program_.visits(lane.words, lane.next, node.statistics.steps, lane.entered);
         if (has_unit()) {
           std::erase_if(lane.visits, [](const NaiveVisit& visit) { return !visit.record; });
         }
@@ -781,7 +810,8 @@ class NaiveSimt final : public sim::EventHandler {
     for (std::uint32_t port = 0; port < machine_.simt.ports; ++port) {
       Reading* const reading = next_reading(node);
       if (reading == nullptr) {
-        break;
+        look_up_prefetch(number);
+        continue;
       }
       const LookUp wanted = reading->left.front();
       const auto line = look_up(number, wanted);
@@ -830,6 +860,38 @@ class NaiveSimt final : public sim::EventHandler {
     }
     return nullptr;
   }
+  // The treelet picked last if a lane wants a record of it, else that of most lanes, the lowest of equal
+  // ones; its oldest warp's lowest lane, and the slot of the warp.
+  static std::pair<Lane*, std::size_t> pick_by_treelet(Node& node) {
+    std::map<std::uint32_t, std::size_t> lanes;
+    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+      if (lane.in == Lane::In::wants) {
+        ++lanes[lane.visits[lane.at].treelet];
+      }
+    });
+    if (lanes.empty()) {
+      return {nullptr, 0};
+    }
+    if (!node.picked_treelet || !lanes.contains(*node.picked_treelet)) {
+      node.picked_treelet = std::max_element(lanes.begin(), lanes.end(), [](const auto& a, const auto& b) {
+                              return a.second < b.second;
+                            })->first;
+    }
+    std::pair<Lane*, std::size_t> picked = {nullptr, 0};
+    for (std::size_t slot = 0; slot < node.unit.size(); ++slot) {
+      if (!node.unit[slot]) {
+        continue;
+      }
+      Warp& warp = node.warps[*node.unit[slot]];
+      for (Lane& lane : warp.lanes) {
+        if (lane.in == Lane::In::wants && lane.visits[lane.at].treelet == *node.picked_treelet &&
+            (picked.first == nullptr || warp.entered < node.warps[*node.unit[picked.second]].entered)) {
+          picked = {&lane, slot};
+        }
+      }
+    }
+    return picked;
+  }
   std::optional<std::size_t> pick_slot(Node& node) const {
     std::optional<std::size_t> oldest;
     for (std::size_t i = 0; i < node.unit.size(); ++i) {
@@ -849,14 +911,19 @@ class NaiveSimt final : public sim::EventHandler {
   }
 
   std::shared_ptr<Reading> next_access(Node& node) const {
-    const std::optional<std::size_t> slot = pick_slot(node);
-    if (!slot) {
+    std::pair<Lane*, std::size_t> lane_and_slot = {nullptr, 0};
+    if (machine_.rt.scheduler == RtScheduler::treelet) {
+      lane_and_slot = pick_by_treelet(node);
+    } else if (const std::optional<std::size_t> slot = pick_slot(node)) {
+      lane_and_slot = {wanting_lane(node, *slot), *slot};
+    }
+    if (lane_and_slot.first == nullptr) {
       return nullptr;
     }
-    const std::size_t picked = *node.unit[*slot];
+    const std::size_t picked = *node.unit[lane_and_slot.second];
     node.picked_warp = picked;
-    node.next_slot = (*slot + 1) % node.unit.size();
-    Lane& first = *wanting_lane(node, *slot);
+    node.next_slot = (lane_and_slot.second + 1) % node.unit.size();
+    Lane& first = *lane_and_slot.first;
     auto access = std::make_shared<Reading>();
     NaiveRecord longest = first.record();
     for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
@@ -875,40 +942,86 @@ class NaiveSimt final : public sim::EventHandler {
     return access;
   }
 
-  // Null: there is no register.
-  std::shared_ptr<Line> look_up(std::uint32_t number, const LookUp& wanted) {
-    Node& node = nodes_[number];
-    const std::size_t cache =
-        node.caches.size() > 1 ? processors::walk::split_cache_of[static_cast<std::size_t>(wanted.kind)] : 0;
-    NaiveTags& tags = node.caches[cache];
+  static NaiveLine line_of(const Node& node, const LookUp& wanted) {
+    return {
+        node.caches.size() > 1 ? processors::walk::split_cache_of[static_cast<std::size_t>(wanted.kind)] : 0,
+        wanted.line};
+  }
+  [[nodiscard]] bool holds(const Node& node, const NaiveLine& line) const {
     const std::uint64_t sectors = machine_.cache.cache.line / unit_;
-    const auto refer = [&] { (void)tags.look_up(wanted.line / sectors, wanted.line % sectors); };
-    for (const Register& one : node.registers) {
-      if (one.line && one.cache == cache && one.number == wanted.line) {
-        refer();
-        ++hits_of(node.statistics, wanted.kind);
-        ++node.counts.joined;
-        return one.line;
+    return node.caches[line.first].holds(line.second / sectors, line.second % sectors);
+  }
+  void refer(Node& node, const NaiveLine& line) const {
+    const std::uint64_t sectors = machine_.cache.cache.line / unit_;
+    (void)node.caches[line.first].look_up(line.second / sectors, line.second % sectors);
+  }
+  static Register* under_way(Node& node, const NaiveLine& line) {
+    for (Register& one : node.registers) {
+      if (one.line && one.number == line) {
+        return &one;
       }
     }
-    const auto line = std::make_shared<Line>();
-    if (tags.holds(wanted.line / sectors, wanted.line % sectors)) {
-      refer();
+    return nullptr;
+  }
+  static Register* free_register(Node& node) {
+    const auto free = std::find_if(node.registers.begin(), node.registers.end(),
+                                   [](const Register& one) { return !one.line; });
+    return free == node.registers.end() ? nullptr : &*free;
+  }
+
+  void look_up_prefetch(std::uint32_t number) {
+    Node& node = nodes_[number];
+    const auto first = node.prefetch.next();
+    if (!first || holds(node, first->line) || under_way(node, first->line) != nullptr) {
+      return;
+    }
+    if (free_register(node) == nullptr) {
+      node.prefetch.no_register();
+      return;
+    }
+    refer(node, first->line);
+    node.prefetch.issued(first->line);
+    ask_behind_cache(number, first->line)->wanted = false;
+  }
+
+  // Null: there is no register.
+  std::shared_ptr<Line> look_up(std::uint32_t number, const LookUp& wanted) {
+    using Found = NaivePrefetch::Found;
+    Node& node = nodes_[number];
+    const NaiveLine which = line_of(node, wanted);
+    if (Register* const one = under_way(node, which)) {
+      refer(node, which);
+      node.prefetch.looked_up(which, Found::joined);
+      one->line->wanted = true;
+      ++hits_of(node.statistics, wanted.kind);
+      ++node.counts.joined;
+      return one->line;
+    }
+    if (holds(node, which)) {
+      const auto line = std::make_shared<Line>();
+      refer(node, which);
+      node.prefetch.looked_up(which, Found::hit);
       ++hits_of(node.statistics, wanted.kind);
       line->there = node.cycle + std::max<Cycle>(1, machine_.cache.hit_cycles);
       node.coming.push_back(line);
       return line;
     }
-    const auto free = std::find_if(node.registers.begin(), node.registers.end(),
-                                   [](const Register& one) { return !one.line; });
-    if (free == node.registers.end()) {
+    if (free_register(node) == nullptr) {
       return nullptr;
     }
-    refer();
+    refer(node, which);
+    node.prefetch.looked_up(which, Found::missed);
     ++misses_of(node.statistics, wanted.kind);
-    *free = {line, cache, wanted.line, node.cycle};
+    return ask_behind_cache(number, which);
+  }
+
+  std::shared_ptr<Line> ask_behind_cache(std::uint32_t number, const NaiveLine& which) {
+    Node& node = nodes_[number];
+    const auto line = std::make_shared<Line>();
+    Register* const free = free_register(node);
+    *free = {line, which, node.cycle};
     if (!node.second.empty()) {
-      const bool hit = node.second.front().look_up(wanted.line, 0);
+      const bool hit = node.second.front().look_up(which.second, 0);
       ++(hit ? node.second_counts.hits : node.second_counts.misses);
       if (hit) {
         const sim::Ticks hit_time = machine_.l2.clock.value_or(machine_.clock).cycles(machine_.l2.hit_cycles);
@@ -920,14 +1033,15 @@ class NaiveSimt final : public sim::EventHandler {
     if (replicated()) {
       arrives(node, *free, processors::walk::LocalMemory(machine_.local).read(unit_, engine_.now()));
     } else {
-      const auto port = static_cast<std::uint32_t>(free - node.registers.begin());
+      const auto port = static_cast<std::uint32_t>(free - node.registers.data());
       interconnects_[number / machine_.nodes]->read(
-          {number % machine_.nodes * machine_.simt.mshrs + port, wanted.line * unit_, unit_});
+          {number % machine_.nodes * machine_.simt.mshrs + port, which.second * unit_, unit_});
     }
     return line;
   }
 
-  void arrives(Node& node, const Register& at, const memory::Service& service) const {
+  void arrives(Node& node, const Register& at, const memory::Service& service) {
+    end_ = std::max(end_, service.done);
     at.line->there = std::max(at.asked + 1, cycle_at_or_after(service.done));
     node.parts.wait_interconnect += service.wait_interconnect;
     node.parts.transfer += service.transfer;
@@ -995,10 +1109,10 @@ class NaiveSimt final : public sim::EventHandler {
     }
     bool second = false;
     for (const Register& one : node.registers) {
-      if (one.line && one.line->left) {
+      if (one.line && one.line->wanted && one.line->left) {
         return std::nullopt;
       }
-      second = second || one.line;
+      second = second || (one.line && one.line->wanted);
     }
     if (second || !node.coming.empty()) {
       return Activity::cache_access;

@@ -7,8 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "accel/record_order.h"
+#include "accel/visitor.h"
 #include "memory/layout.h"
 #include "processors/cost/step_time.h"
+#include "processors/walk/node_order.h"
 #include "processors/walk/record_places.h"
 #include "tests/support/naive_program.h"
 
@@ -29,6 +32,9 @@ struct NaiveRecord {
 struct NaiveVisit {
   std::optional<NaiveRecord> record;
   StepCounts steps;
+  /// To be prefetched when the lane wants the record: of each item the lines of all its records, each once.
+  std::vector<std::vector<NaiveRecord>> wishes;
+  std::uint32_t treelet = 0;  ///< of the record
 };
 
 /// The cycles of a phase, and of one that several lanes take together.
@@ -70,7 +76,12 @@ class NaiveMost {
 class NaiveSimtLog {
  public:
   NaiveSimtLog(const WorkLog& log, const MachineConfig& machine, const memory::Layout& layout)
-      : log_(log), machine_(machine), layout_(layout), rank_(processors::walk::node_ranks(log, machine)) {}
+      : log_(log), machine_(machine), layout_(layout), rank_(processors::walk::node_ranks(log, machine)) {
+    if (machine.layout.node_order == memory::NodeOrder::treelets) {
+      treelets_ = accel::treelets_of(log.topology, !accel::walks_bvh(log.traversal),
+                                     processors::walk::treelet_records(machine.layout));
+    }
+  }
 
   static bool is_visit(Step step) {
     return step == Step::branch || step == Step::leaf || step == Step::partial_leaf || step == Step::cut ||
@@ -91,20 +102,34 @@ class NaiveSimtLog {
   [[nodiscard]] NaiveRecord texel(std::uint32_t texture, std::uint32_t number) const {
     return record(memory::RecordKind::texel, log_.texture_begin[texture] + number, NaiveTest::none);
   }
-  /// The records of the visits that begin at `at`, which moves behind them. Counts their steps.
-  std::vector<NaiveVisit> visits(std::span<const std::uint32_t> words, std::size_t& at,
-                                 StepCounts& counted) const {
+  /// The records of the visits that begin at `at`, which moves behind them. Counts their steps. `entered`: of
+  /// the branches from here on, if wishes are asked for; what is read is taken off.
+  std::vector<NaiveVisit> visits(std::span<const std::uint32_t> words, std::size_t& at, StepCounts& counted,
+                                 std::span<const std::uint32_t>& entered) const {
     std::vector<NaiveVisit> visits;
-    StepCounts waiting;  // steps for the next record
-    bool any = false;    // of them
+    std::vector<std::uint32_t> stack = {0};
+    std::optional<std::uint32_t> before;  // the node visited before
+    StepCounts waiting;                   // steps for the next record
+    bool any = false;                     // of them
     const auto take = [&](const NaiveRecord& of) {
-      visits.push_back({of, std::exchange(waiting, StepCounts{})});
+      visits.push_back({of, std::exchange(waiting, StepCounts{}), {}});
       any = false;
     };
     for (; at < words.size() && is_visit(step_of(words[at])); at += step_words(&words[at])) {
       const std::uint32_t operand = operand_of(words[at]);
       count(&words[at], counted);
       any = true;
+      const std::size_t visit = visits.size();
+      std::vector<std::vector<NaiveRecord>> wishes = take_entry(operand, before, stack, entered);
+      const bool first = visits.empty();
+      const std::uint32_t last = first ? 0 : visits.back().treelet;
+      std::uint32_t treelet = last;
+      if (step_of(words[at]) != Step::pass && !treelets_.of_node.empty()) {
+        treelet = treelets_.of_node[operand];
+      }
+      if (machine_.prefetch.treelet && !first && last != treelet) {
+        wish_for(treelet, wishes);
+      }
       switch (step_of(words[at])) {
         case Step::branch:
           ++waiting.branches;
@@ -125,9 +150,15 @@ class NaiveSimtLog {
           leaf(operand, step_of(words[at]) == Step::leaf ? log_.topology.nodes[operand].count : words[at + 1],
                take, waiting);
       }
+      if (visit < visits.size()) {
+        visits[visit].wishes = wishes;
+      }
+      for (std::size_t i = visit; i < visits.size(); ++i) {
+        visits[i].treelet = treelet;
+      }
     }
     if (any) {
-      visits.push_back({std::nullopt, waiting});
+      visits.push_back({std::nullopt, waiting, {}});
     }
     return visits;
   }
@@ -135,6 +166,54 @@ class NaiveSimtLog {
  private:
   [[nodiscard]] bool inlined() const { return machine_.layout.leaf == memory::LeafLayout::inline_records; }
   [[nodiscard]] bool has_record(std::uint32_t number) const { return NaiveProgram::has_record(log_, number); }
+  // The ray takes the node from its stack; what it wishes for then.
+  std::vector<std::vector<NaiveRecord>> take_entry(std::uint32_t visited,
+                                                   std::optional<std::uint32_t>& before,
+                                                   std::vector<std::uint32_t>& stack,
+                                                   std::span<const std::uint32_t>& entered) const {
+    std::vector<std::vector<NaiveRecord>> wishes;
+    if (machine_.prefetch.stack == 0) {
+      return wishes;
+    }
+    stack.erase(std::find(stack.begin(), stack.end(), visited), stack.end());
+    const auto& nodes = log_.topology.nodes;
+    const auto is_child = [&](std::uint32_t branch) {
+      return !nodes[branch].leaf && visited >= nodes[branch].first &&
+             visited < nodes[branch].first + nodes[branch].count;
+    };
+    if (before && !is_child(*before)) {
+      for (auto at = stack.rbegin(); at != stack.rend() && wishes.size() < machine_.prefetch.stack; ++at) {
+        wishes.push_back({first_record(*at)});
+      }
+    }
+    before = visited;
+    if (!nodes[visited].leaf) {
+      const accel::EnteredChildren children(entered.front());
+      entered = entered.subspan(1);
+      for (std::uint32_t i = 1; i <= children.count(); ++i) {
+        stack.push_back(nodes[visited].first + children[children.count() - i]);
+      }
+    }
+    return wishes;
+  }
+  void wish_for(std::uint32_t treelet, std::vector<std::vector<NaiveRecord>>& wishes) const {
+    wishes.emplace_back();
+    for (std::uint32_t place = treelets_.begin[treelet]; place < treelets_.begin[treelet + 1]; ++place) {
+      wishes.back().push_back(record(memory::RecordKind::node, place, NaiveTest::none));
+    }
+  }
+  [[nodiscard]] NaiveRecord first_record(std::uint32_t number) const {
+    const accel::TopologyNode& its = log_.topology.nodes[number];
+    if (!its.leaf) {
+      return node(number, NaiveTest::box);
+    }
+    return inlined() ? record(memory::RecordKind::primitive, its.first, NaiveTest::none)
+                     : list(its.first, its.count);
+  }
+  [[nodiscard]] NaiveRecord list(std::uint32_t first, std::uint32_t entries) const {
+    return {memory::RecordKind::list, layout_.address(memory::RecordKind::list, first),
+            entries * machine_.layout.entry_bytes, NaiveTest::none};
+  }
   [[nodiscard]] NaiveRecord record(memory::RecordKind kind, std::uint64_t index, NaiveTest test) const {
     return {kind, layout_.address(kind, index), layout_.record_bytes(kind, index), test};
   }
@@ -148,8 +227,7 @@ class NaiveSimtLog {
     }
     const std::uint32_t first = log_.topology.nodes[number].first;
     if (tests > 0 && !inlined()) {
-      take({memory::RecordKind::list, layout_.address(memory::RecordKind::list, first),
-            tests * machine_.layout.entry_bytes, NaiveTest::none});
+      take(list(first, tests));
     }
     for (std::uint32_t entry = first; entry < first + tests; ++entry) {
       const std::uint32_t primitive = log_.topology.entries[entry];
@@ -164,6 +242,7 @@ class NaiveSimtLog {
   MachineConfig machine_;
   memory::Layout layout_;
   std::vector<std::uint32_t> rank_;
+  accel::Treelets treelets_;
 };
 
 }  // namespace marti::test

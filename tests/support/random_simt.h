@@ -67,6 +67,22 @@ inline processors::machine::MachineConfig random_simt(Random& random,
   if (accel::walks_bvh(log.traversal)) {
     machine.layout.leaf = static_cast<memory::LeafLayout>(pick(random, 0, 1));
   }
+  if (log.order == accel::WalkOrder::treelet_first) {  // at most log.treelet_records of a log's own layout
+    machine.layout.node_order = memory::NodeOrder::treelets;
+    machine.layout.treelet_bytes =
+        static_cast<std::uint32_t>(log.treelet_records * machine.layout.node_stride());
+  }
+  const bool treelets = machine.layout.node_order == memory::NodeOrder::treelets;
+  if (treelets && random() % 3 == 0) {
+    rt.scheduler = RtScheduler::treelet;
+  }
+  if (rt.warps > 0 && machine.placement != Placement::replicated) {
+    if (log.has_entered() && random() % 2 == 0) {
+      machine.prefetch.stack = static_cast<std::uint32_t>(pick(random, 1, 6));
+    }
+    machine.prefetch.treelet = treelets && random() % 2 == 0;
+    machine.prefetch.queue = static_cast<std::uint32_t>(pick(random, 1, random() % 2 == 0 ? 4 : 40));
+  }
   if (random() % 3 == 0) {
     machine.layout.section_alignment = 1U << pick(random, 0, 4);  // kinds of record share lines
   }
@@ -111,6 +127,11 @@ inline std::string describe_simt(const processors::machine::MachineConfig& machi
   value("hit_cycles", machine.cache.hit_cycles);
   value("ports", machine.simt.ports);
   value("mshrs", machine.simt.mshrs);
+  value("prefetch.stack", machine.prefetch.stack);
+  value("prefetch.treelet", machine.prefetch.treelet);
+  value("queue", machine.prefetch.queue);
+  choice("node_order", memory::node_order_names, machine.layout.node_order);
+  value("treelet", machine.layout.treelet_bytes);
   choice("l2", second_level_names, machine.l2.sharing);
   value("l2.hit_cycles", machine.l2.hit_cycles);
   choice("placement", placement_names, machine.placement);

@@ -17,6 +17,8 @@ namespace marti::studies::sweep {
 
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
+  bool& entered = frames_[frame].config.render.entered;
+  entered = entered || read.frame.render.entered;  // one log serves all machines of the frame
   const auto on_frame = [&](const std::string& machine) {
     Digest digest;
     digest.add(frames_[frame].key);

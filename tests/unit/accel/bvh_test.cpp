@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "accel/bvh_order.h"
+#include "accel/record_order.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/contract/hostile.h"
@@ -191,6 +193,108 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
     });
   }
   EXPECT_GT(leaves, 2000U);
+}
+
+// With the hit as far as nothing, entered children are all that are visited. With hits, children that were
+// entered wait on a stack, in the order told, for a visit or until a hit is nearer.
+TEST_P(BvhOfEachNode, EnteredChildrenAreVisitedOrBehindTheHit) {
+  const Bvh bvh = build(std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:4:pot")));
+  const std::vector<TopologyNode>& nodes = bvh.topology().nodes;
+  RayMaker maker(bvh.triangles(), bvh.bounds(), 7);
+  std::uint64_t dropped = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const accel::Ray ray = maker.make(tests::all_aims[static_cast<std::size_t>(k) % 6]);
+    for (const bool shadow : {false, true}) {
+      Recorder recorder;
+      const bool found = shadow ? bvh.occluded(ray, recorder) : bvh.closest(ray, recorder).found();
+      std::vector<std::uint32_t> waiting = {0};
+      bool hit_possible = false;  // a leaf was visited: without one nothing is dropped
+      for (const Recorder::Visit& visit : recorder.visits) {
+        for (; !waiting.empty() && waiting.back() != visit.node; waiting.pop_back()) {
+          ASSERT_TRUE(found && hit_possible) << "dropped without a hit";
+          ++dropped;
+        }
+        ASSERT_FALSE(waiting.empty()) << "visited without being entered";
+        waiting.pop_back();
+        hit_possible = hit_possible || visit.leaf;
+        ASSERT_TRUE(!visit.leaf || visit.entered.empty());
+        for (std::size_t place = visit.entered.size(); place-- > 0;) {
+          ASSERT_LT(visit.entered[place], nodes[visit.node].count);
+          waiting.push_back(nodes[visit.node].first + visit.entered[place]);
+        }
+      }
+      ASSERT_TRUE(found || waiting.empty() || recorder.visits.empty());
+    }
+  }
+  EXPECT_GT(dropped, 100U);
+}
+
+/// The entry that a ray takes next; `entries` in the order in which they were entered, the children of a
+/// branch with the nearest first for breadth_first, else last.
+std::size_t next_entry(const std::vector<std::uint32_t>& entries, accel::WalkOrder order,
+                       const std::vector<std::uint32_t>& treelet, std::uint32_t visited) {
+  if (order == accel::WalkOrder::breadth_first) {
+    return 0;
+  }
+  for (std::size_t i = entries.size(); order == accel::WalkOrder::treelet_first && i-- > 0;) {
+    if (treelet[entries[i]] == treelet[visited]) {
+      return i;
+    }
+  }
+  return entries.size() - 1;
+}
+
+// In every order the hits are those of the usual walk, bit for bit, and each visit is to the entry that is
+// next, but for those that the hit is nearer than.
+TEST_P(BvhOfEachNode, OrdersGiveTheSameHits) {
+  for (const bool hostile : {false, true}) {
+    const Bvh bvh = build(hostile ? set_of(tests::hostile_soup(1e3, 8, true)) : mixed_set(), 1);
+    for (const accel::WalkOrder order :
+         {accel::WalkOrder::depth_first, accel::WalkOrder::breadth_first, accel::WalkOrder::treelet_first}) {
+      const std::vector<std::uint32_t> treelet = accel::treelets_of(bvh.topology(), false, 3).of_node;
+      const accel::OrderedBvh ordered(bvh, order, 3);
+      RayMaker maker(bvh.triangles(), bvh.bounds(), 8);
+      for (int k = 0; k < 4000; ++k) {
+        const accel::Ray ray =
+            maker.make(tests::all_aims[static_cast<std::size_t>(k) % tests::all_aims.size()]);
+        Recorder usual;
+        Recorder recorder;
+        Recorder shadow;
+        const accel::Hit hit = bvh.closest(ray, usual);
+        ASSERT_TRUE(test::same_bits(hit, ordered.closest(ray, recorder)));
+        if (k % static_cast<int>(tests::all_aims.size()) < 6) {  // others do not all fit floats
+          ASSERT_TRUE(test::same_bits(bvh.closest<float>(ray, shadow), ordered.closest<float>(ray, shadow)));
+        }
+        ASSERT_EQ(bvh.occluded(ray, shadow), ordered.occluded(ray, shadow));
+        if (order == accel::WalkOrder::depth_first) {
+          ASSERT_EQ(usual.visits, recorder.visits);
+        }
+        std::vector<std::uint32_t> entries = {0};
+        std::uint32_t visited = 0;
+        for (const Recorder::Visit& visit : recorder.visits) {
+          for (;;) {
+            ASSERT_FALSE(entries.empty());
+            const std::size_t next = next_entry(entries, order, treelet, visited);
+            const std::uint32_t taken = entries[next];
+            entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(next));
+            if (taken == visit.node) {
+              break;
+            }
+            ASSERT_TRUE(hit.found()) << "dropped without a hit";
+          }
+          visited = visit.node;
+          std::vector<std::uint32_t> entered = visit.entered;
+          if (order != accel::WalkOrder::breadth_first) {
+            std::reverse(entered.begin(), entered.end());
+          }
+          for (const std::uint32_t child : entered) {
+            entries.push_back(bvh.topology().nodes[visited].first + child);
+          }
+        }
+        ASSERT_TRUE(hit.found() || entries.empty() || recorder.visits.empty());
+      }
+    }
+  }
 }
 
 // The records' layout is documented, so a machine's addresses rest on these sizes.

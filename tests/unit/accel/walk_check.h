@@ -18,6 +18,7 @@
 #include "accel/ray.h"
 #include "accel/topology.h"
 #include "accel/triangles.h"
+#include "accel/visitor.h"
 #include "scenes/scene.h"
 #include "tests/contract/hostile.h"
 #include "tests/support/long_tests.h"
@@ -73,12 +74,18 @@ struct Recorder {
     std::uint32_t tests;
     std::uint32_t entries;
     bool leaf;
+    std::vector<std::uint32_t> entered{};  // children of a branch of a bvh, by their numbers among these
     bool operator==(const Visit&) const = default;
   };
   std::vector<Visit> visits;
   void branch(std::uint32_t node) { visits.push_back({node, 0, 0, false}); }
   void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
     visits.push_back({node, tests, entries, true});
+  }
+  void entered(accel::EnteredChildren children) {
+    for (std::uint32_t place = 0; place < children.count(); ++place) {
+      visits.back().entered.push_back(children[place]);
+    }
   }
   void mailed_leaf(std::uint32_t node, std::uint32_t read, std::uint32_t entries,
                    const std::uint32_t* /*tested*/) {

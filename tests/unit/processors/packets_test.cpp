@@ -143,9 +143,9 @@ TEST(NodeOrder, EveryOrderIsAPermutationThatKeepsChildrenTogether) {
     const accel::Topology topology = test::random_topology(random, 30, 10, 3);
     for (const bool leaf_records : {true, false}) {
       const auto most = static_cast<std::uint32_t>(test::pick(random, 1, 40));
-      for (const std::vector<std::uint32_t>& rank :
-           {breadth_first_rank(topology, leaf_records), depth_first_rank(topology, leaf_records),
-            treelet_rank(topology, leaf_records, most)}) {
+      for (const std::vector<std::uint32_t>& rank : {accel::breadth_first_rank(topology, leaf_records),
+                                                     accel::depth_first_rank(topology, leaf_records),
+                                                     accel::treelets_of(topology, leaf_records, most).rank}) {
         std::vector<std::uint32_t> records;
         for (std::uint32_t node = 0; node < rank.size(); ++node) {
           ASSERT_EQ(rank[node] == no_record, !leaf_records && topology.nodes[node].leaf);
@@ -177,8 +177,9 @@ TEST(NodeOrder, OneLargeTreeletIsBreadthFirstAndOneOfEachBlockDepthFirst) {
   test::Random random(3);
   for (int k = 0; k < 20; ++k) {
     const accel::Topology topology = test::random_topology(random, 30, 10, 3);
-    EXPECT_EQ(treelet_rank(topology, false, 1U << 20U), breadth_first_rank(topology, false));
-    EXPECT_EQ(treelet_rank(topology, true, 1), depth_first_rank(topology, true));
+    EXPECT_EQ(accel::treelets_of(topology, false, 1U << 20U).rank,
+              accel::breadth_first_rank(topology, false));
+    EXPECT_EQ(accel::treelets_of(topology, true, 1).rank, accel::depth_first_rank(topology, true));
   }
 }
 
@@ -191,11 +192,15 @@ TEST(NodeOrder, TreeletsHoldWhatFits) {
     topology.nodes.push_back({node < 7 ? 2 * node + 1 : node - 7, node < 7 ? 2U : 1U,
                               static_cast<std::uint8_t>(std::bit_width(node + 1)), node >= 7});
   }
-  const std::vector<std::uint32_t> rank = treelet_rank(topology, false, 3);
-  EXPECT_EQ(std::vector<std::uint32_t>(rank.begin(), rank.begin() + 7),
-            (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6}));
-  const std::vector<std::uint32_t> counted = treelet_rank(topology, true, 3);
-  EXPECT_EQ(counted, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 9, 10, 5, 6, 7, 8, 11, 12, 13, 14}));
+  using Numbers = std::vector<std::uint32_t>;
+  const accel::Treelets branches = accel::treelets_of(topology, false, 3);
+  EXPECT_EQ(Numbers(branches.rank.begin(), branches.rank.begin() + 7), (Numbers{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(branches.begin, (Numbers{0, 3, 5, 7}));
+  EXPECT_EQ(branches.of_node, (Numbers{0, 0, 0, 1, 1, 2, 2, 1, 1, 1, 1, 2, 2, 2, 2}));
+  const accel::Treelets counted = accel::treelets_of(topology, true, 3);
+  EXPECT_EQ(counted.rank, (Numbers{0, 1, 2, 3, 4, 9, 10, 5, 6, 7, 8, 11, 12, 13, 14}));
+  EXPECT_EQ(counted.begin, (Numbers{0, 3, 5, 7, 9, 11, 13, 15}));
+  EXPECT_EQ(counted.of_node, (Numbers{0, 0, 0, 1, 1, 4, 4, 2, 2, 3, 3, 5, 5, 6, 6}));
 }
 
 }  // namespace

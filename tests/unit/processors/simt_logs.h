@@ -46,7 +46,8 @@ inline scenes::Scene glass_and_pictures() {
 }
 
 /// The work logs of small renderings; of bounding volume hierarchies, and of others.
-inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_t height) {
+inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_t height,
+                                               bool entered = true) {
   std::vector<program::WorkLog> logs;
   const auto add = [&](scenes::Scene scene, std::string_view kind, program::RenderOptions options = {},
                        accel::BvhNodeKind node = accel::BvhNodeKind::two) {
@@ -57,6 +58,7 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
     options.width = width;
     options.height = height;
     options.record = true;
+    options.entered = entered;
     if (options.max_depth == program::RenderOptions{}.max_depth) {
       options.max_depth = 3;
     }
@@ -67,6 +69,10 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
   add(glass_and_pictures(), "bvh", {}, accel::BvhNodeKind::eight_quantised);
   add(scenes::make_procedural("balls:1"), "grid");
   add(scenes::make_procedural("jacks:2"), "bvh", {}, accel::BvhNodeKind::eight);
+  add(scenes::make_procedural("jacks:2"), "bvh", {.order = accel::WalkOrder::breadth_first},
+      accel::BvhNodeKind::four);
+  add(glass_and_pictures(), "bvh", {.order = accel::WalkOrder::treelet_first, .treelet_records = 6},
+      accel::BvhNodeKind::eight);
   add(scenes::make_procedural("lattice:1"), "bsp", {.samples = 2});
   add(scenes::make_procedural("room:2"), "bvh", {.integrator = program::Integrator::path},
       accel::BvhNodeKind::four);

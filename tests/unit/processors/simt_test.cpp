@@ -85,7 +85,7 @@ void expect_laws(const WorkLog& log, const MachineConfig& machine, const Machine
     written += cluster.interconnect.writes;
   }
   ASSERT_EQ(written, writes);
-  std::int64_t asked = result.references().all_misses();
+  std::int64_t asked = result.references().all_misses() + result.contexts.counts().issued;
   if (machine.l2.sharing == SecondLevel::private_caches) {
     ASSERT_EQ(result.l2.counters().references(), asked);
     asked = result.l2.counters().misses;
@@ -97,6 +97,7 @@ TEST(Simt, EqualsTheNaiveOneOnRandomMachines) {
   const std::vector<std::vector<WorkLog>> logs = {test::simt_logs(7, 5), test::simt_logs(16, 12)};
   const std::size_t machines = marti::test::cases(marti::test::stride(200, 4000));
   SimtCounts all;
+  walk::ContextCounts prefetches;
   for (std::uint64_t seed = 1; seed <= machines; ++seed) {
     marti::test::Random random(seed);
     const auto& sizes = logs[random() % 12 == 0 ? 1 : 0];
@@ -110,10 +111,76 @@ TEST(Simt, EqualsTheNaiveOneOnRandomMachines) {
     ASSERT_FALSE(::testing::Test::HasFatalFailure());
     ASSERT_EQ(marti::test::FirstDifference::between(replay::replay(sizes[which], machine), plain), "");
     sim::merge(all, plain.simt.counts());
+    sim::merge(prefetches, plain.contexts.counts());
   }
   sim::for_each_counter(all, [](const sim::Counter<SimtCounts>& counter, std::int64_t value) {
     EXPECT_GT(value, 100) << counter.name;  // these machines meet all that is counted
   });
+  for (const std::int64_t value :
+       {prefetches.useful, prefetches.useless, prefetches.late, prefetches.dropped}) {
+    EXPECT_GT(value, 100);
+  }
+}
+
+// What the log has beside the visits changes nothing else in it.
+TEST(Simt, EnteredChildrenAreBesideTheLog) {
+  const std::vector<WorkLog> with = test::simt_logs(7, 5);
+  const std::vector<WorkLog> without = test::simt_logs(7, 5, false);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    ASSERT_EQ(with[i].has_entered(),
+              accel::walks_bvh(with[i].traversal) && with[i].order == accel::WalkOrder::depth_first);
+    ASSERT_FALSE(without[i].has_entered());
+    for (std::uint32_t y = 0; y < with[i].height; ++y) {
+      ASSERT_TRUE(with[i].rows[y].words == without[i].rows[y].words);
+      ASSERT_TRUE(with[i].rows[y].begin == without[i].rows[y].begin);
+    }
+    MachineConfig machine;
+    machine.kind = NodeKind::simt;
+    machine.prefetch.stack = 2;
+    EXPECT_THROW((void)replay::replay(without[i], machine), sim::UserError);
+  }
+}
+
+// A law: whatever the order, the image is the same, ray by ray. Breadth first finds its hits late, so it
+// visits more nodes.
+TEST(Simt, OrdersOfTraversalGiveEqualImages) {
+  std::vector<scenes::Scene> scenes;
+  scenes.push_back(test::glass_and_pictures());
+  for (const std::string_view name : {"jacks:2", "room:2", "balls:2", "teapot:3"}) {
+    scenes.push_back(scenes::make_procedural(name));
+  }
+  for (const scenes::Scene& scene : scenes) {
+    for (const accel::BvhNodeKind node : {accel::BvhNodeKind::two, accel::BvhNodeKind::four,
+                                          accel::BvhNodeKind::eight, accel::BvhNodeKind::eight_quantised}) {
+      for (const Integrator integrator : {Integrator::whitted, Integrator::path}) {
+        accel::StructureOptions structure;
+        structure.bvh.node = node;
+        test::Built built(scene);
+        built.structure = accel::make_structure("bvh", built.triangles, structure);
+        RenderOptions options{.width = 24, .height = 18, .max_depth = 3, .integrator = integrator};
+        options.record = true;
+        const Frame usual = built.render(options);
+        options.treelet_records = 5;
+        for (const accel::WalkOrder order :
+             {accel::WalkOrder::breadth_first, accel::WalkOrder::treelet_first}) {
+          for (const bool floats : {false, true}) {
+            options.floats = floats;
+            options.order = accel::WalkOrder::depth_first;
+            const Frame expected = floats ? built.render(options) : usual;
+            options.order = order;
+            const Frame frame = built.render(options);
+            ASSERT_EQ(frame.hit_hash, expected.hit_hash);
+            ASSERT_EQ(frame.image.pixels, expected.image.pixels);
+            ASSERT_EQ(frame.log->order, order);
+            const LogTotals now = totals_of(*frame.log);
+            const LogTotals before = totals_of(*expected.log);
+            ASSERT_EQ(now.all_rays(), before.all_rays());
+            ASSERT_TRUE(order != accel::WalkOrder::breadth_first || now.branches >= before.branches);
+          }
+        }
+      }
+    }
+  }
 }
 
 // Its warps write pixels while the node's only line is under way.
@@ -375,6 +442,26 @@ TEST(Simt, RefusesWhatCannotBe) {
        }},
       {"node.kind", [](MachineConfig& m) { m.cache.organisation = CacheOrganisation::none; }},
       {"node.contexts", [](MachineConfig& m) { m.contexts = 2; }},
+      {"prefetch.stack", [](MachineConfig& m) { m.prefetch.stack = most_prefetched_entries + 1; }},
+      {"prefetch.queue", [](MachineConfig& m) { m.prefetch.queue = 0; }},
+      {"prefetch.stack",
+       [](MachineConfig& m) {
+         m.prefetch.stack = 1;
+         m.rt.warps = 0;
+       }},
+      {"prefetch.stack",
+       [](MachineConfig& m) {
+         m.prefetch.stack = 1;
+         m.placement = Placement::replicated;
+       }},
+      {"prefetch.stack",
+       [](MachineConfig& m) {
+         m.prefetch.stack = 1;
+         m.kind = NodeKind::core;
+       }},
+      {"prefetch.stack", [](MachineConfig& m) { m.prefetch.stack = 1; }},  // of a log of an octree
+      {"prefetch.treelet", [](MachineConfig& m) { m.prefetch.treelet = true; }},
+      {"rt.scheduler", [](MachineConfig& m) { m.rt.scheduler = RtScheduler::treelet; }},
       {"prefetch",
        [](MachineConfig& m) {
          m.prefetch.next_line = true;
