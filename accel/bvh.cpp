@@ -87,6 +87,9 @@ Bvh Bvh::build(std::shared_ptr<const TriangleSet> triangles, const BvhOptions& o
     case BvhNodeKind::four:
       tree.make_records(tree.four_);
       break;
+    case BvhNodeKind::six:
+      tree.make_records(tree.six_);
+      break;
     case BvhNodeKind::eight:
       tree.make_records(tree.eight_);
       break;
@@ -202,6 +205,8 @@ Traversal Bvh::traversal() const {
       return Traversal::bvh_two;
     case BvhNodeKind::four:
       return Traversal::bvh_four;
+    case BvhNodeKind::six:
+      return Traversal::bvh_six;
     case BvhNodeKind::eight:
       return Traversal::bvh_eight;
     case BvhNodeKind::eight_quantised:
@@ -212,8 +217,9 @@ Traversal Bvh::traversal() const {
 
 std::uint64_t Bvh::walk_bytes() const {
   return two_.size() * sizeof(BvhNode<2>) + four_.size() * sizeof(BvhNode<4>) +
-         eight_.size() * sizeof(BvhNode<8>) + quantised_.size() * sizeof(BvhQuantisedNode) +
-         bytes_of_vector(first_) + bytes_of_vector(primitives_);
+         six_.size() * sizeof(BvhSixNode) + eight_.size() * sizeof(BvhNode<8>) +
+         quantised_.size() * sizeof(BvhQuantisedNode) + bytes_of_vector(first_) +
+         bytes_of_vector(primitives_);
 }
 
 double Bvh::sah_cost() const {

@@ -77,6 +77,8 @@ class Bvh : public Queries<Bvh> {
         return f(view(two_));
       case BvhNodeKind::four:
         return f(view(four_));
+      case BvhNodeKind::six:
+        return f(view(six_));
       case BvhNodeKind::eight:
         return f(view(eight_));
       case BvhNodeKind::eight_quantised:
@@ -105,6 +107,7 @@ class Bvh : public Queries<Bvh> {
   std::vector<std::uint32_t> place_;
   sim::LargeVector<BvhNode<2>> two_;
   sim::LargeVector<BvhNode<4>> four_;
+  sim::LargeVector<BvhSixNode> six_;
   sim::LargeVector<BvhNode<8>> eight_;
   sim::LargeVector<BvhQuantisedNode> quantised_;
 };

@@ -23,15 +23,44 @@ int exponent_for(float lo, float hi) {
   return e;
 }
 
+// Writes the boxes of a node's children as steps from the lower corner of them all.
+template <class Node>
+void write_boxes(Node& node, std::span<const BvhBox> boxes) {
+  BvhBox all;
+  for (const BvhBox& box : boxes) {
+    all.include(box);
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    node.corner[a] = all.lo[a];
+    const int e = exponent_for(all.lo[a], all.hi[a]);
+    node.exponent[a] = static_cast<std::uint8_t>(e + 127);
+    const auto steps = [&](float x) {
+      return std::ldexp(static_cast<double>(x) - static_cast<double>(all.lo[a]), -e);
+    };
+    for (std::size_t c = 0; c < boxes.size(); ++c) {
+      node.plane[0][a][c] = static_cast<std::uint8_t>(std::floor(steps(boxes[c].lo[a])));
+      node.plane[1][a][c] = static_cast<std::uint8_t>(std::min(std::ceil(steps(boxes[c].hi[a])), 255.0));
+    }
+  }
+}
+
+template <class Node>
+scenes::Bounds read_box(const Node& node, std::size_t c) {
+  scenes::Bounds box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<glm::length_t>(a);
+    box.lo[axis] = static_cast<double>(node.corner[a]) + double{node.step(a)} * node.plane[0][a][c];
+    box.hi[axis] = static_cast<double>(node.corner[a]) + double{node.step(a)} * node.plane[1][a][c];
+  }
+  return box;
+}
+
 }  // namespace
 
 BvhQuantisedNode BvhQuantisedNode::make(std::uint32_t /*first*/, std::span<const BvhBox> boxes,
                                         std::span<const BvhChild> children) {
   BvhQuantisedNode node;
-  BvhBox all;
-  for (const BvhBox& box : boxes) {
-    all.include(box);
-  }
+  write_boxes(node, boxes);
   std::uint32_t tests = 0;
   bool seen_branch = false;
   bool seen_leaf = false;
@@ -49,29 +78,30 @@ BvhQuantisedNode BvhQuantisedNode::make(std::uint32_t /*first*/, std::span<const
       tests += entries;
     }
   }
-  for (std::size_t a = 0; a < 3; ++a) {
-    node.corner[a] = all.lo[a];
-    const int e = exponent_for(all.lo[a], all.hi[a]);
-    node.exponent[a] = static_cast<std::uint8_t>(e + 127);
-    const auto steps = [&](float x) {
-      return std::ldexp(static_cast<double>(x) - static_cast<double>(all.lo[a]), -e);
-    };
-    for (std::size_t c = 0; c < boxes.size(); ++c) {
-      node.plane[0][a][c] = static_cast<std::uint8_t>(std::floor(steps(boxes[c].lo[a])));
-      node.plane[1][a][c] = static_cast<std::uint8_t>(std::min(std::ceil(steps(boxes[c].hi[a])), 255.0));
+  return node;
+}
+
+scenes::Bounds BvhQuantisedNode::box(std::size_t c) const { return read_box(*this, c); }
+
+BvhSixNode BvhSixNode::make(std::uint32_t /*first*/, std::span<const BvhBox> boxes,
+                            std::span<const BvhChild> children) {
+  BvhSixNode node;
+  write_boxes(node, boxes);
+  node.count = static_cast<std::uint8_t>(children.size());
+  bool seen_branch = false;
+  bool seen_leaf = false;
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    const bool branch = children[c].entries == 0;
+    bool& seen = branch ? seen_branch : seen_leaf;
+    if (!seen) {
+      (branch ? node.first_branch : node.first_primitive) = children[c].record;
     }
+    seen = true;
+    node.entries |= children[c].entries << (4 * c);
   }
   return node;
 }
 
-scenes::Bounds BvhQuantisedNode::box(std::size_t c) const {
-  scenes::Bounds box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<glm::length_t>(a);
-    box.lo[axis] = static_cast<double>(corner[a]) + double{step(a)} * plane[0][a][c];
-    box.hi[axis] = static_cast<double>(corner[a]) + double{step(a)} * plane[1][a][c];
-  }
-  return box;
-}
+scenes::Bounds BvhSixNode::box(std::size_t c) const { return read_box(*this, c); }
 
 }  // namespace marti::accel

@@ -118,7 +118,54 @@ struct alignas(16) BvhQuantisedNode {
   }
   [[nodiscard]] scenes::Bounds box(std::size_t c) const;
 };
+
+/// Six children in 64 bytes, as in the nodes that Intel's units read (Embree 4,
+/// kernels/rthwif/rtbuild/qbvh6.h, InternalNode6) and that Vulkan-Sim therefore traces: boxes in bytes as in
+/// BvhQuantisedNode. Unlike there, leaves are not among the records, so the place of the first one is noted
+/// beside that of the first branch.
+struct alignas(64) BvhSixNode {
+  static constexpr std::size_t width = 6;
+  /// As in BvhNode. Eleven more find a leaf: a shift and a mask for its own four bits, a mask for those of
+  /// the children before it, seven to add these (three masks, two shifts, an addition, a multiplication), and
+  /// adding the sum to the place of the first one. A branch counts zeros instead, in as many.
+  static constexpr std::uint32_t child_operations = 12;
+
+  /// As in BvhNode. They come first, so that eight bytes can be read at each place that has six.
+  std::array<std::array<std::array<std::uint8_t, 6>, 3>, 2> plane{};
+  std::array<float, 3> corner{};
+  std::uint32_t first_branch = 0;     ///< record of the first child that is a branch; others follow
+  std::uint32_t first_primitive = 0;  ///< of the first child that is a leaf; others follow
+  std::uint32_t entries = 0;          ///< four bits for each child: 0 for a branch, else how many primitives
+  std::array<std::uint8_t, 3> exponent{};  ///< as in BvhQuantisedNode
+  std::uint8_t count = 0;                  ///< number of children
+
+  [[nodiscard]] static BvhSixNode make(std::uint32_t first, std::span<const BvhBox> boxes,
+                                       std::span<const BvhChild> children);
+
+  [[nodiscard]] float step(std::size_t axis) const {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(exponent[axis]) << 23U);
+  }
+  [[nodiscard]] std::uint32_t children() const { return count; }
+  [[nodiscard]] BvhChild child(std::size_t c) const {
+    const std::uint32_t own = (entries >> (4 * c)) & 15U;
+    const std::uint32_t before = entries & ((1U << (4 * c)) - 1U);
+    if (own != 0) {
+      const std::uint32_t pairs = (before & 0x0F0F0FU) + ((before >> 4U) & 0x0F0F0FU);
+      return {first_primitive + (((pairs * 0x010101U) >> 16U) & 0xFFU), own};
+    }
+    const std::uint32_t halves = before | (before >> 2U);
+    const auto leaves = static_cast<std::uint32_t>(std::popcount((halves | (halves >> 1U)) & 0x111111U));
+    return {first_branch + static_cast<std::uint32_t>(c) - leaves, 0};
+  }
+  [[nodiscard]] scenes::Bounds box(std::size_t c) const;
+};
 static_assert(sizeof(BvhNode<2>) == 64 && sizeof(BvhNode<4>) == 128 && sizeof(BvhNode<8>) == 256 &&
-              sizeof(BvhQuantisedNode) == 80);
+              sizeof(BvhQuantisedNode) == 80 && sizeof(BvhSixNode) == 64);
+
+/// A node whose planes are bytes that count steps.
+template <class Node>
+concept BvhInBytes = requires(const Node& node) {
+  node.step(0);
+};
 
 }  // namespace marti::accel

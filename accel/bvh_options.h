@@ -10,25 +10,26 @@
 namespace marti::accel {
 
 /// How many children a branch has at most, and how their boxes are kept (bvh_nodes.h).
-enum class BvhNodeKind : std::uint8_t { two, four, eight, eight_quantised };
-inline constexpr std::array<std::string_view, 4> bvh_node_names = {"2", "4", "8", "8_quantised"};
+enum class BvhNodeKind : std::uint8_t { two, four, six, eight, eight_quantised };
+inline constexpr std::array<std::string_view, 5> bvh_node_names = {"2", "4", "6", "8", "8_quantised"};
 
 /// Bytes of a branch's record. A leaf has none: its parent's record says where its list is.
 [[nodiscard]] constexpr std::uint32_t bvh_record_bytes(BvhNodeKind kind) {
-  constexpr std::array<std::uint32_t, 4> bytes = {64, 128, 256, 80};
+  constexpr std::array<std::uint32_t, 5> bytes = {64, 128, 64, 256, 80};
   return bytes[static_cast<std::size_t>(kind)];
 }
 
 /// Most children of a branch.
 [[nodiscard]] constexpr std::uint32_t bvh_children(BvhNodeKind kind) {
-  constexpr std::array<std::uint32_t, 4> children = {2, 4, 8, 8};
+  constexpr std::array<std::uint32_t, 5> children = {2, 4, 6, 8, 8};
   return children[static_cast<std::size_t>(kind)];
 }
 
-/// Most primitives that a leaf can list: a quantised node counts its leaves' primitives in three bits each,
-/// in unary.
+/// Most primitives that a leaf can list: the records in bytes count them in three bits in unary (8_quantised)
+/// and in four bits (6).
 [[nodiscard]] constexpr std::uint32_t bvh_largest_leaf(BvhNodeKind kind) {
-  return kind == BvhNodeKind::eight_quantised ? 3 : 64;
+  constexpr std::array<std::uint32_t, 5> primitives = {64, 64, 15, 64, 3};
+  return primitives[static_cast<std::size_t>(kind)];
 }
 
 inline constexpr std::uint32_t bvh_most_bins = 64;

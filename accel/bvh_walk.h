@@ -60,11 +60,11 @@ class BvhPlanes {
   const BvhRay<Float>& ray_;
 };
 
-/// The planes of a quantised node: its steps and corner are multiplied by the reciprocals once.
-template <class Float>
-class BvhQuantisedPlanes {
+/// The planes of a node in bytes: its steps and corner are multiplied by the reciprocals once.
+template <BvhInBytes Node, class Float>
+class BvhBytePlanes {
  public:
-  BvhQuantisedPlanes(const BvhQuantisedNode& node, const BvhRay<Float>& ray) : node_(node), ray_(ray) {
+  BvhBytePlanes(const Node& node, const BvhRay<Float>& ray) : node_(node), ray_(ray) {
     for (std::size_t a = 0; a < 3; ++a) {
       step_[a] = Float(node.step(a)) * ray.reciprocal[a];
       const Float corner = Float(node.corner[a]) * ray.reciprocal[a];
@@ -83,7 +83,7 @@ class BvhQuantisedPlanes {
   }
 
  private:
-  const BvhQuantisedNode& node_;
+  const Node& node_;
   const BvhRay<Float>& ray_;
   std::array<Float, 3> step_;
   std::array<Float, 3> near_;
@@ -94,8 +94,8 @@ template <class Float, std::size_t Width>
 [[nodiscard]] BvhPlanes<Float, Width> planes_of(const BvhNode<Width>& node, const BvhRay<Float>& ray) {
   return {node, ray};
 }
-template <class Float>
-[[nodiscard]] BvhQuantisedPlanes<Float> planes_of(const BvhQuantisedNode& node, const BvhRay<Float>& ray) {
+template <BvhInBytes Node, class Float>
+[[nodiscard]] BvhBytePlanes<Node, Float> planes_of(const Node& node, const BvhRay<Float>& ray) {
   return {node, ray};
 }
 

@@ -33,7 +33,9 @@ struct alignas(32) BvhEntries {
                                                                     std::size_t axis, std::uint32_t side) {
   return _mm256_load_ps(node.plane[ray.near_side[axis] ^ side][axis].data());
 }
-[[gnu::target("avx2"), gnu::always_inline]] inline __m256 planes_of(const BvhQuantisedNode& node,
+/// Eight planes from bytes; those beyond the node's width are of no child.
+template <BvhInBytes Node>
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256 planes_of(const Node& node,
                                                                     const BvhRay<float>& ray,
                                                                     std::size_t axis, std::uint32_t side) {
   const auto* const bytes =
@@ -88,7 +90,18 @@ template <std::size_t Width>
   return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(in, out))) & ((1U << Width) - 1U);
 }
 
-[[gnu::target("avx2"), gnu::always_inline]] inline unsigned met_children(const BvhQuantisedNode& node,
+/// The children that a node has, as bits.
+[[gnu::target("avx2"), gnu::always_inline]] inline unsigned all_children(const BvhQuantisedNode& node) {
+  const __m128i absent = _mm_cmpeq_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(node.meta.data())),
+                                        _mm_setzero_si128());
+  return ~static_cast<unsigned>(_mm_movemask_epi8(absent));
+}
+[[gnu::target("avx2"), gnu::always_inline]] inline unsigned all_children(const BvhSixNode& node) {
+  return (1U << node.count) - 1U;
+}
+
+template <BvhInBytes Node>
+[[gnu::target("avx2"), gnu::always_inline]] inline unsigned met_children(const Node& node,
                                                                          const BvhRay<float>& ray,
                                                                          float limit, BvhEntries& entries) {
   __m256 in = _mm256_setzero_ps();
@@ -102,10 +115,7 @@ template <std::size_t Width>
                                            _mm256_set1_ps(corner + ray.far[a])));
   }
   _mm256_store_ps(entries.in.data(), in);
-  const __m128i absent = _mm_cmpeq_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(node.meta.data())),
-                                        _mm_setzero_si128());
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(in, out, _CMP_LE_OQ))) &
-         ~static_cast<unsigned>(_mm_movemask_epi8(absent));
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(in, out, _CMP_LE_OQ))) & all_children(node);
 }
 
 /// Begins to fetch what a waiting child's visit reads first.

@@ -17,13 +17,21 @@ enum class Traversal : std::uint8_t {
   none,            ///< brute_force.h
   bvh_two,         ///< bvh_walk.h, by the nodes of bvh_options.h
   bvh_four,
+  bvh_six,
   bvh_eight,
   bvh_eight_quantised,
 };
-inline constexpr std::size_t traversals = 9;
-inline constexpr std::array<std::string_view, traversals> traversal_names = {
-    "octree",          "bsp, recursive",  "bsp, push-point", "grid", "none", "bvh, 2 children",
-    "bvh, 4 children", "bvh, 8 children", "bvh, 8 quantised"};
+inline constexpr std::size_t traversals = 10;
+inline constexpr std::array<std::string_view, traversals> traversal_names = {"octree",
+                                                                             "bsp, recursive",
+                                                                             "bsp, push-point",
+                                                                             "grid",
+                                                                             "none",
+                                                                             "bvh, 2 children",
+                                                                             "bvh, 4 children",
+                                                                             "bvh, 6 children",
+                                                                             "bvh, 8 children",
+                                                                             "bvh, 8 quantised"};
 
 /// Whether the structure is a bounding volume hierarchy. Then leaves have no records: that of their parent
 /// says what they list.

@@ -141,6 +141,7 @@ class CountingRecorder {
       case accel::Traversal::bsp_recursive:
       case accel::Traversal::bvh_two:
       case accel::Traversal::bvh_four:
+      case accel::Traversal::bvh_six:
       case accel::Traversal::bvh_eight:
       case accel::Traversal::bvh_eight_quantised:
         return &Buckets::branch;  // the walk of its parent continues
@@ -378,6 +379,10 @@ const OperationMixes& operation_mixes(accel::Traversal traversal) {
                     .branch = {24038, 24042, 0, 0, 29525, 1209},
                     .leaf = {},
                     .test = {21260, 14536, 362, 0, 9421, 0}}),
+      with_shading({.ray = bvh_rays,
+                    .branch = {41122, 41127, 0, 0, 42764, 51070},
+                    .leaf = {},
+                    .test = {21242, 14522, 360, 0, 9389, 0}}),
       with_shading({.ray = bvh_rays,
                     .branch = {46224, 46230, 0, 0, 55658, 1306},
                     .leaf = {},

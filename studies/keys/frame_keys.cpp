@@ -36,10 +36,11 @@ void read_bvh(const sim::Config& config, accel::BvhOptions& options) {
   options.bins = count(config, "structure.bvh_bins");
   const std::uint32_t largest = accel::bvh_largest_leaf(options.node);
   if (options.max_objects > largest) {
-    config.fail("structure.bvh_leaf", "must be at most " + std::to_string(largest) +
-                                          " with structure.bvh_children = \"" +
-                                          config.choice_name("structure.bvh_children") +
-                                          "\", whose records count a leaf's primitives in three bits");
+    config.fail("structure.bvh_leaf",
+                "must be at most " + std::to_string(largest) + " with structure.bvh_children = \"" +
+                    config.choice_name("structure.bvh_children") +
+                    "\", whose records count a leaf's primitives in " +
+                    (options.node == accel::BvhNodeKind::six ? "four" : "three") + " bits");
   }
 }
 
@@ -194,10 +195,10 @@ void declare_frame_keys(sim::Schema& schema) {
                 "bsp: from the root down, or from leaf to leaf by a point pushed through their faces and "
                 "located from the root");
   schema.choice("structure.bvh_children", "8", names(accel::bvh_node_names),
-                "bvh: most children of a node, whose record has 32 bytes for each; 8_quantised: eight in 80 "
-                "bytes");
+                "bvh: most children of a node, whose record has 32 bytes for each; 6: 64 bytes in all, "
+                "8_quantised: 80, with boxes in bytes");
   schema.integer("structure.bvh_leaf", 3, {1, accel::bvh_largest_leaf(accel::BvhNodeKind::two)}, "primitives",
-                 "bvh: most that a leaf lists; 8_quantised: at most 3");
+                 "bvh: most that a leaf lists; 6: at most 15, 8_quantised: at most 3");
   schema.integer("structure.bvh_bins", 32, {2, accel::bvh_most_bins}, "",
                  "bvh: intervals of each axis between which the builder looks for a node's best split");
   schema.boolean("structure.mailboxes", false,

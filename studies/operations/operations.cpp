@@ -33,7 +33,7 @@ struct CountedWalk {
 constexpr CountedWalk bvh_walk(const char* name, accel::BvhNodeKind node) {
   return {name, "bvh", accel::BspWalk::recursive, accel::GridMatch::density, node};
 }
-constexpr std::array<CountedWalk, 11> plans{{
+constexpr std::array<CountedWalk, 12> plans{{
     {"octree", "octree"},
     {"bsp, recursive", "bsp"},
     {"bsp, push-point", "bsp", accel::BspWalk::push_point},
@@ -42,6 +42,7 @@ constexpr std::array<CountedWalk, 11> plans{{
     {"grid, octree's cells", "grid", accel::BspWalk::recursive, accel::GridMatch::octree_cells},
     bvh_walk("bvh, 2 children", accel::BvhNodeKind::two),
     bvh_walk("bvh, 4 children", accel::BvhNodeKind::four),
+    bvh_walk("bvh, 6 children", accel::BvhNodeKind::six),
     bvh_walk("bvh, 8 children", accel::BvhNodeKind::eight),
     bvh_walk("bvh, 8 quantised", accel::BvhNodeKind::eight_quantised),
     {"none", "none"},

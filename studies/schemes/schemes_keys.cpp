@@ -57,7 +57,7 @@ NamedStructure named_structure(const sim::Config& config, const std::string& nam
   }
   config.fail("schemes.structures",
               "there is no structure \"" + sim::shown(name) +
-                  "\"; there are octree, bsp, grid, bvh:2, bvh:4, bvh:8, bvh:8_quantised");
+                  "\"; there are octree, bsp, grid, bvh:2, bvh:4, bvh:6, bvh:8, bvh:8_quantised");
 }
 
 // Calls `work`, which reads a file that the key names; errors in that file are reported under the key.
@@ -107,7 +107,7 @@ void declare_schemes_keys(sim::Schema& schema) {
   schema.integer("schemes.cell_objects", 1, {1, 1'000'000}, "",
                  "structure.max_objects of these trees: small, so that the level decides");
   schema.texts("schemes.structures", {},
-               "structures compared on that machine: octree, bsp, grid, bvh:2, bvh:4, bvh:8, "
+               "structures compared on that machine: octree, bsp, grid, bvh:2, bvh:4, bvh:6, bvh:8, "
                "bvh:8_quantised");
   schema.text("schemes.stage_machine", "pipeline.toml",
               "the pipeline whose nodes are shared out among its stages in several ways; empty: none");

@@ -87,6 +87,8 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles
   add_bvh(accel::BvhNodeKind::two, 4);
   add_bvh(accel::BvhNodeKind::two, 1, 2);
   add_bvh(accel::BvhNodeKind::four, 4);
+  add_bvh(accel::BvhNodeKind::six, 15);
+  add_bvh(accel::BvhNodeKind::six, 1, 16);
   add_bvh(accel::BvhNodeKind::eight, 4);
   add_bvh(accel::BvhNodeKind::eight, 64, 64);
   add_bvh(accel::BvhNodeKind::eight_quantised, 3);

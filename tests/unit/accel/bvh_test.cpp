@@ -39,9 +39,11 @@ std::string name_of(const ::testing::TestParamInfo<BvhNodeKind>& tested) {
   return "children_" + std::string(accel::bvh_node_names[static_cast<std::size_t>(tested.param)]);
 }
 INSTANTIATE_TEST_SUITE_P(Bvh, BvhOfEachNode,
-                         ::testing::Values(BvhNodeKind::two, BvhNodeKind::four, BvhNodeKind::eight,
-                                           BvhNodeKind::eight_quantised),
+                         ::testing::Values(BvhNodeKind::two, BvhNodeKind::four, BvhNodeKind::six,
+                                           BvhNodeKind::eight, BvhNodeKind::eight_quantised),
                          name_of);
+
+bool in_bytes(BvhNodeKind kind) { return kind == BvhNodeKind::six || kind == BvhNodeKind::eight_quantised; }
 
 std::shared_ptr<const accel::TriangleSet> mixed_set() {
   return std::make_shared<const accel::TriangleSet>(tests::hostile_soup(0.0, 1), hostile_quadrics(0.0, 1));
@@ -155,7 +157,7 @@ TEST_P(BvhOfEachNode, TheCostIsThatOfTheBoxes) {
     cost += area(boxes[n]) / area(boxes[0]) * (node.leaf ? node.count : 1);
   }
   EXPECT_GE(bvh.sah_cost(), cost * (1.0 - 1e-9));
-  EXPECT_LE(bvh.sah_cost(), cost * (GetParam() == BvhNodeKind::eight_quantised ? 1.06 : 1.0 + 1e-5));
+  EXPECT_LE(bvh.sah_cost(), cost * (in_bytes(GetParam()) ? 1.06 : 1.0 + 1e-5));
 }
 
 // A node is left out only if the ray misses its box, or the hit is nearer: what is visited is exactly what a
@@ -165,7 +167,7 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
   const std::vector<scenes::Bounds> boxes = tight_boxes(bvh);
   const double size = glm::length(boxes[0].hi - boxes[0].lo);
   // A quantised box may reach a 255th of its parent farther.
-  const double wide = GetParam() == BvhNodeKind::eight_quantised ? 1.0 : 1e-4;
+  const bool wide = in_bytes(GetParam());
   const std::vector<std::uint32_t> parent = parents_of(bvh.topology().nodes);
   RayMaker maker(bvh.triangles(), bvh.bounds(), 6);
   std::uint64_t leaves = 0;
@@ -180,8 +182,7 @@ TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {
       ASSERT_TRUE(visit.node == 0 || visited.contains(parent[visit.node]));
       ASSERT_EQ(visit.leaf, bvh.topology().nodes[visit.node].leaf);
       const glm::dvec3 extent = boxes[parent[visit.node]].hi - boxes[parent[visit.node]].lo;
-      const double margin =
-          1e-4 * size + (wide < 1.0 ? 0.0 : std::max({extent.x, extent.y, extent.z}) / 127.0);
+      const double margin = 1e-4 * size + (wide ? std::max({extent.x, extent.y, extent.z}) / 127.0 : 0.0);
       const Inside on = inside(ray, boxes[visit.node], margin);
       ASSERT_LE(on.in, on.out) << "a node the ray does not meet";
       leaves += visit.leaf ? 1 : 0;
@@ -301,16 +302,18 @@ TEST_P(BvhOfEachNode, OrdersGiveTheSameHits) {
 TEST(BvhNodes, RecordsHaveTheDocumentedSizes) {
   EXPECT_EQ(sizeof(accel::BvhNode<2>), accel::bvh_record_bytes(BvhNodeKind::two));
   EXPECT_EQ(sizeof(accel::BvhNode<4>), accel::bvh_record_bytes(BvhNodeKind::four));
+  EXPECT_EQ(sizeof(accel::BvhSixNode), accel::bvh_record_bytes(BvhNodeKind::six));
   EXPECT_EQ(sizeof(accel::BvhNode<8>), accel::bvh_record_bytes(BvhNodeKind::eight));
   EXPECT_EQ(sizeof(accel::BvhQuantisedNode), accel::bvh_record_bytes(BvhNodeKind::eight_quantised));
 }
 
 // Boxes of all sizes and places: each quantised box holds the box itself, and is wider by at most a step.
-TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
+template <class Node>
+void check_boxes_in_bytes(std::uint32_t largest_leaf) {
   Random random(3);
   for (int k = 0; k < 4000; ++k) {
     const double spread = std::pow(2.0, random.between(-20.0, 0.0));
-    std::vector<accel::BvhBox> boxes(1 + random.below(8));
+    std::vector<accel::BvhBox> boxes(1 + random.below(Node::width));
     std::vector<accel::BvhChild> children(boxes.size());
     std::uint32_t branches = 7;
     std::uint32_t primitives = 100;
@@ -322,11 +325,11 @@ TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
         boxes[c].lo[a] = lo;
         boxes[c].hi[a] = random.below(4) == 0 ? lo : lo + static_cast<float>(spread * random.unit() * 0.1);
       }
-      const std::uint32_t entries = random.below(4);
+      const std::uint32_t entries = random.below(largest_leaf + 1);
       children[c] = {entries == 0 ? branches++ : primitives, entries};
       primitives += entries;
     }
-    const accel::BvhQuantisedNode node = accel::BvhQuantisedNode::make(0, boxes, children);
+    const Node node = Node::make(0, boxes, children);
     ASSERT_EQ(node.children(), boxes.size());
     for (std::size_t c = 0; c < boxes.size(); ++c) {
       ASSERT_EQ(node.child(c).record, children[c].record);
@@ -344,11 +347,17 @@ TEST(BvhNodes, QuantisedBoxesHoldTheirBoxes) {
   }
 }
 
+TEST(BvhNodes, BoxesInBytesHoldTheirBoxes) {
+  check_boxes_in_bytes<accel::BvhSixNode>(accel::bvh_largest_leaf(BvhNodeKind::six));
+  check_boxes_in_bytes<accel::BvhQuantisedNode>(accel::bvh_largest_leaf(BvhNodeKind::eight_quantised));
+}
+
 TEST(Bvh, RefusesOptionsOutOfRange) {
   const auto set = set_of(tests::hostile_soup(0.0, 1));
   for (const BvhOptions& options :
        {BvhOptions{.max_objects = 0}, BvhOptions{.max_objects = 65}, BvhOptions{.bins = 1},
-        BvhOptions{.bins = 65}, BvhOptions{.node = BvhNodeKind::eight_quantised, .max_objects = 4}}) {
+        BvhOptions{.bins = 65}, BvhOptions{.node = BvhNodeKind::six, .max_objects = 16},
+        BvhOptions{.node = BvhNodeKind::eight_quantised, .max_objects = 4}}) {
     EXPECT_THROW((void)Bvh::build(set, options), sim::UserError);
   }
   EXPECT_THROW((void)Bvh::build(set, {.memory = sim::MemoryBudget(1000)}), sim::UserError);

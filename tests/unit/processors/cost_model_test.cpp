@@ -121,6 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Walk{accel::Traversal::grid, "grid"}, Walk{accel::Traversal::none, "none"},
                       bvh_walk(accel::Traversal::bvh_two, accel::BvhNodeKind::two),
                       bvh_walk(accel::Traversal::bvh_four, accel::BvhNodeKind::four),
+                      bvh_walk(accel::Traversal::bvh_six, accel::BvhNodeKind::six),
                       bvh_walk(accel::Traversal::bvh_eight, accel::BvhNodeKind::eight),
                       bvh_walk(accel::Traversal::bvh_eight_quantised, accel::BvhNodeKind::eight_quantised)),
     [](const auto& tested) { return std::to_string(tested.index); });
