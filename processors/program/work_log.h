@@ -145,7 +145,9 @@ struct LogTotals {
   std::uint64_t texels = 0;
   std::uint64_t cuts = 0;
   std::uint64_t passes = 0;
-  std::uint64_t bytes = 0;  ///< words and pixel offsets
+  std::uint64_t visits_95 = 0;    ///< the least number of visits that 95 % of the rays do not exceed
+  std::uint64_t most_visits = 0;  ///< of a ray: branches, leaves and nodes taken as one voxel
+  std::uint64_t bytes = 0;        ///< words and pixel offsets
 
   [[nodiscard]] std::uint64_t all_rays() const {
     return std::accumulate(std::begin(rays), std::end(rays), std::uint64_t{0});

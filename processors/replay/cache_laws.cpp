@@ -40,6 +40,12 @@ std::int64_t reads_beyond_caches(const machine::MachineConfig& config, const Mac
              : result.references().all_misses() + result.contexts.counts().issued;
 }
 
+std::int64_t reads_of_memory(const machine::MachineConfig& config, const MachineResult& result) {
+  const bool shared = config.l2.sharing == machine::SecondLevel::shared;
+  return reads_beyond_caches(config, result) + result.build.counts().locks -
+         (shared ? result.l2.counters().hits : 0);
+}
+
 void check_second_level_laws(const machine::MachineConfig& config, const MachineResult& result) {
   if (config.l2.sharing == machine::SecondLevel::private_caches) {
     check_private(result);

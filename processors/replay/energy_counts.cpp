@@ -48,10 +48,7 @@ energy::EnergyCounts energy_counts(const program::WorkLog& log, const machine::M
   }
   // An ideal network has no links: its messages cross one.
   counts.hop_bytes = config.network.kind == memory::NetworkKind::ideal ? network.bytes : network.link_bytes;
-  // Every line that no cache holds is read from a bank or from the node's own memory, and each lock reads
-  // its branch.
-  const std::int64_t served = config.l2.sharing == machine::SecondLevel::shared ? counts.l2.hits : 0;
-  counts.memory_reads = reads_beyond_caches(config, result) + counts.build.locks - served;
+  counts.memory_reads = reads_of_memory(config, result);
   for (const ClusterResult& cluster : result.clusters) {
     for (std::size_t channel = 0; channel < cluster.dram.size(); ++channel) {
       sim::merge(counts.dram, cluster.dram[channel]);

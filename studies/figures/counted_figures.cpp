@@ -7,6 +7,7 @@
 #include "processors/cost/accounting.h"
 #include "processors/node/memory_system.h"
 #include "processors/replay/bounds.h"
+#include "processors/replay/cache_laws.h"
 #include "sim/error.h"
 #include "studies/figures/counted_parts.h"
 #include "studies/figures/machine_totals.h"
@@ -150,6 +151,9 @@ void add_all(FigureParts& parts, const MachineConfig& machine, const MachineResu
   add_build_figures(parts, result);
   add_cache_figures(parts, result, totals);
   add_asked_figures(parts, machine, result);
+  parts.add("memory_bytes_read",
+            {"byte", "lines that banks and nodes' own memories read, whole ones where DRAM reads bursts"},
+            processors::replay::reads_of_memory(machine, result) * machine.reference_bytes());
   parts.add_all("energy_", "where [energy] is on", result.energy);
 }
 

@@ -16,6 +16,19 @@ namespace {
 Formula own(std::string_view name) { return Formula(name); }
 Formula base(std::string_view name) { return Formula(name, Whose::base); }
 
+// What figures call the kinds of ray.
+constexpr std::array<std::string_view, processors::program::ray_kinds> ray_figures = {
+    "camera", "shadow", "reflection", "refraction", "diffuse"};
+std::string rays_of(std::string_view kind) { return "steps_" + std::string(kind) + "_rays"; }
+
+Formula all_rays() {
+  Formula sum = own(rays_of(ray_figures[0]));
+  for (std::size_t kind = 1; kind < ray_figures.size(); ++kind) {
+    sum = sum + own(rays_of(ray_figures.at(kind)));
+  }
+  return sum;
+}
+
 // Which part of the lost speed-up an activity belongs to: its place in loss_names.
 std::size_t loss_of(processors::cost::Activity activity) {
   using processors::cost::Activity;
@@ -240,6 +253,23 @@ void add_memory(std::vector<FigureEntry>& all) {
   }
 }
 
+void add_rays(std::vector<FigureEntry>& all) {
+  const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
+                          const Formula& formula) {
+    all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
+  };
+  const auto a_second = [](const Formula& rays) { return rays * Formula(1e12) / own("end"); };
+  add("rays_a_second", "1/s", "rays of all kinds traced in a second", Better::higher, a_second(all_rays()));
+  for (const std::string_view kind : ray_figures) {
+    add("rays_a_second_" + std::string(kind), "1/s", "those of this kind", Better::higher,
+        a_second(own(rays_of(kind))));
+  }
+  add("visits_a_ray", "1", "branches, leaves and nodes taken as one voxel that a ray visits, mean",
+      Better::lower, (own("steps_branches") + own("steps_leaves") + own("steps_cuts")) / all_rays());
+  add("memory_bytes_a_ray", "byte", "read from memory for a ray, by whole lines", Better::lower,
+      own("memory_bytes_read") / all_rays());
+}
+
 // Units: 1 mJ is 1e12 fJ, 1 s is 1e12 ps, hence 1 W is 1e3 fJ a ps.
 void add_energy(std::vector<FigureEntry>& all) {
   const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
@@ -248,8 +278,7 @@ void add_energy(std::vector<FigureEntry>& all) {
   };
   const Formula total = own("energy_total");
   const Formula energy = total / Formula(1e12);
-  const Formula rays = own("steps_camera_rays") + own("steps_shadow_rays") + own("steps_reflection_rays") +
-                       own("steps_refraction_rays") + own("steps_diffuse_rays");
+  const Formula rays = all_rays();
   add("energy", "mJ", "energy of the frame, where [energy] is on", Better::lower, energy);
   add("power", "W", "mean power: energy by frame time", Better::lower,
       total / (own("end") * Formula(1000.0)));
@@ -283,6 +312,7 @@ std::span<const FigureEntry> derived_figures() {
     add_energy(made);
     return made;
   }();
+    add_rays(made);
   return figures;
 }
 

@@ -61,6 +61,9 @@ void add_log(figures::FigureParts& parts, const processors::program::LogTotals& 
                   log.bytes);
   add(parts, "log_branches", "branches visited", log.branches);
   add(parts, "log_leaves", "leaves visited", log.leaves);
+  add(parts, "log_visits_95", "branches, leaves and voxels that 95 % of the rays visit at most",
+      log.visits_95);
+  add(parts, "log_most_visits", "the most of these that a ray visits", log.most_visits);
   add(parts, "log_tests", "primitives tested", log.tests);
   add(parts, "log_lookups", "mailboxes looked up", log.lookups);
   add(parts, "log_shades", "points shaded", log.shades);

@@ -99,6 +99,7 @@ nlohmann::ordered_json simt_json(const run::RunResult& r) {
 }
 
 std::string simt_lines(const run::RunResult& r) {
+  constexpr double mega = 1e6;
   if (r.timed.simt.nodes.empty()) {
     return {};
   }
@@ -143,9 +144,24 @@ std::string simt_lines(const run::RunResult& r) {
       "\n  {:<12}{:.2f} lanes an access; mean {:.1f} of {} under way, {} joined; none free {} of the time\n",
       "lines", number("simt_lanes_an_access"), number("simt_mean_lines"), r.machine.simt.mshrs,
       tables::grouped(r.count("simt_joined")), percent(r.figure("simt_full_share")));
+  const processors::program::LogTotals& log = r.functional.totals;
+  fmt::format_to(
+      out, "  {:<12}{:.1f} visits on average, {} at most of 95 %, the most {}; {:.0f} bytes from memory\n",
+      "rays", number("visits_a_ray"), tables::grouped(log.visits_95), tables::grouped(log.most_visits),
+      number("memory_bytes_a_ray"));
   fmt::format_to(out, "  {:<12}{:.0f} cycles on average, the longest {}; the slowest warp {} for a packet\n",
-                 "rays", number("simt_ray_latency"), tables::grouped(r.count("simt_longest_ray")),
+                 "", number("simt_ray_latency"), tables::grouped(r.count("simt_longest_ray")),
                  tables::grouped(r.count("simt_longest_warp")));
+  fmt::format_to(out, "  {:<12}{:.4g} M a second", "", number("rays_a_second") / mega);
+  const char* before = ": ";
+  for (std::size_t kind = 0; kind < processors::program::ray_kinds; ++kind) {
+    if (log.rays[kind] > 0) {
+      const std::string name(processors::program::ray_kind_names[kind]);
+      fmt::format_to(out, "{}{} {:.4g}", before, name, number("rays_a_second_" + name) / mega);
+      before = ", ";
+    }
+  }
+  text += "\n";
   return text;
 }
 

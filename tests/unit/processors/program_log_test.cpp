@@ -52,6 +52,22 @@ TEST(WorkLog, CountsEveryKindOfStep) {
   EXPECT_EQ(totals.texels, 1U);
   EXPECT_EQ(totals.bytes, 4U * (11 + 2));
   EXPECT_EQ(totals.all_steps(), 14U);
+  EXPECT_EQ(totals.visits_95, 3U);
+  EXPECT_EQ(totals.most_visits, 3U);
+}
+
+// Of 40 rays, each of which visits a node more than the one before, two visit more than 37.
+TEST(WorkLog, CountsRaysByTheirVisits) {
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t ray = 0; ray < 40; ++ray) {
+    words.push_back(make_word(Step::ray, 0));
+    words.insert(words.end(), ray, make_word(ray % 2 == 0 ? Step::branch : Step::leaf, ray % 2));
+    words.push_back(make_word(Step::shade, 1));
+  }
+  const LogTotals totals = totals_of(small_log(std::move(words)));
+  EXPECT_EQ(totals.visits_95, 37U);
+  EXPECT_EQ(totals.most_visits, 39U);
+  EXPECT_EQ(totals_of(small_log({})).visits_95, 0U);
 }
 
 TEST(WorkLog, CountsWhatMailboxesLeftOut) {
