@@ -38,6 +38,7 @@ struct EnergyCounts {
 /// The parts add up to `total` exactly.
 struct EnergyResult {
   std::int64_t operations = 0;
+  std::int64_t unit = 0;
   std::int64_t l1 = 0;
   std::int64_t l2 = 0;
   std::int64_t interconnect = 0;
@@ -45,25 +46,31 @@ struct EnergyResult {
   std::int64_t leakage = 0;
   std::int64_t total = 0;
   std::int64_t area = 0;
+  std::int64_t cache_area = 0;
+  std::int64_t unit_area = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<EnergyResult>;
     return std::array{
         C{"operations", "fJ", "operations of the nodes, each with what its instruction takes beside it",
           &EnergyResult::operations},
+        C{"unit", "fJ", "tests of ray-tracing units, and reading and writing the rays that they hold",
+          &EnergyResult::unit},
         C{"l1", "fJ", "first-level caches: look-ups, and lines brought in", &EnergyResult::l1},
         C{"l2", "fJ", "second-level caches", &EnergyResult::l2},
         C{"interconnect", "fJ", "bytes moved over interconnects and networks", &EnergyResult::interconnect},
         C{"memory", "fJ", "accesses of banks and local memories", &EnergyResult::memory},
         C{"leakage", "fJ", "area times frame time", &EnergyResult::leakage},
         C{"total", "fJ", "all parts together", &EnergyResult::total},
-        C{"area", "um2", "area of nodes and caches", &EnergyResult::area}};
+        C{"area", "um2", "area of nodes, caches and ray-tracing units", &EnergyResult::area},
+        C{"cache_area", "um2", "of this, of caches", &EnergyResult::cache_area},
+        C{"unit_area", "um2", "of this, of ray-tracing units", &EnergyResult::unit_area}};
   }
 };
 static_assert(sim::declares_every_member<EnergyResult>());
 
 /// The number of EnergyResult's first counters that are parts of `total`.
-inline constexpr std::size_t energy_parts = 6;
+inline constexpr std::size_t energy_parts = 7;
 
 /// Throws KeyError when a figure that the machine needs is not known, or is out of range.
 void check_energy(const machine::MachineConfig& config);

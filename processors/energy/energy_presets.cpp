@@ -125,6 +125,15 @@ machine::EnergyFigures energy_figures(machine::EnergyPreset preset) {
   return {};
 }
 
+OperationAreas operation_areas(machine::EnergyPreset preset) {
+  // SimTRaX's units at 65 nm (FPADD, FPMUL, FPINV, INTADD of sim/ReadConfig.cc), as in the areas of nodes
+  // above.
+  const double nanometres = preset == machine::EnergyPreset::nm22 ? 22.0 : 45.0;
+  const double scale = preset == machine::EnergyPreset::none ? 0.0 : nanometres * nanometres / (65.0 * 65.0);
+  return {
+      .add = 0.003 * scale, .multiply = 0.0165 * scale, .divide = 0.112 * scale, .integer = 0.00066 * scale};
+}
+
 std::optional<machine::CacheFigures> known_cache(machine::EnergyPreset preset,
                                                  const memory::CacheConfig& cache) {
   const auto* const known = std::ranges::find(known_caches, cache.line, &KnownCaches::line);

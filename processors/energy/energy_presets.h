@@ -14,6 +14,15 @@ namespace marti::processors::energy {
 /// `none`.
 [[nodiscard]] machine::EnergyFigures energy_figures(machine::EnergyPreset preset);
 
+/// Areas in mm2 of units that begin an operation in each cycle.
+struct OperationAreas {
+  double add = 0.0;
+  double multiply = 0.0;
+  double divide = 0.0;   ///< and square root
+  double integer = 0.0;  ///< and comparison
+};
+[[nodiscard]] OperationAreas operation_areas(machine::EnergyPreset preset);
+
 /// Caches whose figures are known, by the bytes of their lines. One of more ways than the most that are
 /// known, 8 or with lines of 128 bytes 32, takes as much as one of so many: nobody builds one that reads them
 /// all.

@@ -40,16 +40,16 @@ std::int64_t switched(const machine::EnergyConfig& energy, std::string_view key,
   return std::llround(nominal * energy.voltage * energy.voltage);
 }
 
-machine::OperationCycles operations_of(const machine::EnergyConfig& energy) {
+// Operations with what each takes beside its own, `beside` of them under `beside_key`.
+machine::OperationCycles operations_of(const machine::EnergyConfig& energy, std::string_view beside_key,
+                                       double beside) {
   const machine::EnergyFigures& figures = energy.figures;
   const auto operation = [&](std::string_view key, double picojoules) {
     require_range(key, picojoules, most_of_operation);
     return switched(energy, key, picojoules);
   };
-  const std::int64_t instruction = operation("instruction", figures.instruction);
-  const auto of = [&](std::string_view key, double picojoules) {
-    return operation(key, picojoules) + instruction;
-  };
+  const std::int64_t each = operation(beside_key, beside);
+  const auto of = [&](std::string_view key, double picojoules) { return operation(key, picojoules) + each; };
   return {.add = of("add", figures.add),
           .multiply = of("multiply", figures.multiply),
           .divide = of("divide", figures.divide),
@@ -65,12 +65,14 @@ struct NamedCache {
   memory::CacheConfig cache;
   std::string_view size_key;
   std::string_view line_key;
-  std::string_view level;  // "l1" or "l2"
+  std::string_view level;  // "l1", "l2" or "rt"
 };
 
 // The cache's figures: those that are given, for the others those of CACTI's caches.
 machine::CacheFigures figures_of(const machine::EnergyConfig& energy, const NamedCache& named) {
-  machine::CacheFigures figures = named.level == "l1" ? energy.figures.l1 : energy.figures.l2;
+  machine::CacheFigures figures = named.level == "l1"   ? energy.figures.l1
+                                  : named.level == "l2" ? energy.figures.l2
+                                                        : energy.figures.rt;
   if (figures.read != machine::by_shape && figures.write != machine::by_shape &&
       figures.area != machine::by_shape) {
     return figures;
@@ -129,15 +131,45 @@ void add_second_level(const machine::MachineConfig& config, EnergyUnits& units) 
   }
 }
 
+// What holds the rays of a unit, as a direct-mapped cache of lines of 64 bytes: of each lane the ray, its hit
+// and ten entries of its stack, 128 bytes, and of each line under way its address and who waits for it, 16
+// bytes.
+void add_unit(const machine::MachineConfig& config, EnergyUnits& units) {
+  constexpr std::uint64_t ray_bytes = 128;
+  constexpr std::uint64_t register_bytes = 16;
+  const machine::EnergyConfig& energy = config.energy;
+  units.unit_operations = operations_of(energy, "rt_operation", energy.figures.rt_operation);
+  const std::uint64_t bytes =
+      ray_bytes * config.rt.warps * config.simt.lanes + register_bytes * config.simt.mshrs;
+  memory::CacheConfig rays;
+  rays.line = 64;
+  rays.ways = 1;
+  rays.size = std::max(bytes, known_caches[1].least_size);
+  Wide area = 0;
+  units.unit_rays = add_cache(energy, {rays, "rt.warps", "rt.warps", "rt"}, area);
+  units.rays_area = area;
+  units.node_area += area;
+  const auto area_of = [](std::string_view key, double figure) {
+    return figure == machine::by_shape ? by_unit_operations
+                                       : Wide{whole(key, figure, square_micrometres_a_square_millimetre)};
+  };
+  units.box_unit_area = area_of("rt_box_area", energy.figures.rt_box_area);
+  units.triangle_unit_area = area_of("rt_triangle_area", energy.figures.rt_triangle_area);
+}
+
 }  // namespace
 
 EnergyUnits energy_units(const machine::MachineConfig& config) {
   const machine::EnergyConfig& energy = config.energy;
   const machine::EnergyFigures& figures = energy.figures;
   EnergyUnits units;
-  units.operations = operations_of(energy);
+  units.operations = operations_of(energy, "instruction", figures.instruction);
   add_first_level(config, units);
   add_second_level(config, units);
+  units.cache_area = units.node_area;
+  if (config.has_rt_unit()) {
+    add_unit(config, units);
+  }
   constexpr double bits = 8.0;
   units.interconnect_byte = switched(energy, "wire", figures.wire * figures.interconnect_length * bits);
   units.hop_byte = switched(energy, "wire", figures.wire * figures.hop_length * bits);
@@ -156,8 +188,12 @@ EnergyUnits energy_units(const machine::MachineConfig& config) {
     units.dram_write = config.banks.dram->burst_bytes * byte_written;
   }
   constexpr double square = square_micrometres_a_square_millimetre;
-  units.node_area += whole("node_area", figures.node_area, square) +
-                     Wide{config.contexts - 1} * whole("context_area", figures.context_area, square);
+  // Of the lanes of warps, so many compute at once; those of other warps have registers alone.
+  const bool simt = config.kind == machine::NodeKind::simt;
+  const Wide computing = simt ? std::min(config.simt.issue, config.simt.warps) * config.simt.lanes : 1;
+  const Wide all = simt ? config.simt.warps * config.simt.lanes : config.contexts;
+  units.node_area += computing * whole("node_area", figures.node_area, square) +
+                     (all - computing) * whole("context_area", figures.context_area, square);
   units.leakage = whole("leakage_density", figures.leakage_density, picowatts_of_milliwatts);
   return units;
 }

@@ -112,6 +112,7 @@ struct MachineConfig {
   EnergyConfig energy;
 
   [[nodiscard]] std::uint32_t all_nodes() const { return clusters * nodes; }
+  [[nodiscard]] bool has_rt_unit() const { return kind == NodeKind::simt && rt.warps > 0; }
   /// Bytes that one reference reads at most: a cache line or its sector, or an interleave of the banks
   /// without a cache.
   [[nodiscard]] std::uint32_t reference_bytes() const {

@@ -286,7 +286,10 @@ void add_energy(std::vector<FigureEntry>& all) {
   add("energy_a_ray", "nJ", "energy by rays of all kinds", Better::lower, total / Formula(1e6) / rays);
   add("energy_delay", "uJ s", "energy times frame time", Better::lower,
       total / Formula(1e9) * (own("end") / Formula(1e12)));
-  add("area", "mm2", "area of nodes and caches", Better::lower, own("energy_area") / Formula(1e6));
+  add("area", "mm2", "area of nodes, caches and ray-tracing units", Better::lower,
+      own("energy_area") / Formula(1e6));
+  add("rays_a_second_mm2", "1/s", "rays of all kinds in a second, by area", Better::higher,
+      rays * Formula(1e12) / own("end") / (own("energy_area") / Formula(1e6)));
 }
 
 const std::map<std::string, const FigureEntry*, std::less<>>& figures_by_name() {
@@ -309,10 +312,10 @@ std::span<const FigureEntry> derived_figures() {
     std::vector<FigureEntry> made;
     add_speed(made);
     add_memory(made);
+    add_rays(made);
     add_energy(made);
     return made;
   }();
-    add_rays(made);
   return figures;
 }
 

@@ -32,7 +32,7 @@ constexpr double most_of_byte = 100'000.0;
 constexpr double most_of_access = 1'000'000.0;
 constexpr double most_length = 10'000.0;
 
-constexpr std::array<FigureKey, 18> figure_keys = {{
+constexpr std::array<FigureKey, 21> figure_keys = {{
     {"energy.add", &EnergyFigures::add, most_of_operation, "pJ", "of an addition or subtraction"},
     {"energy.multiply", &EnergyFigures::multiply, most_of_operation, "pJ", "of a multiplication"},
     {"energy.divide", &EnergyFigures::divide, most_of_operation, "pJ", "of a division"},
@@ -56,11 +56,19 @@ constexpr std::array<FigureKey, 18> figure_keys = {{
      "of a byte that a memory reads; each read is of a cache line"},
     {"energy.memory_write", &EnergyFigures::memory_write, most_of_byte, "pJ",
      "of a byte that a memory writes; each write is of a cache line"},
-    {"energy.node_area", &EnergyFigures::node_area, most_length, "mm2", "area of a node without its caches"},
+    {"energy.node_area", &EnergyFigures::node_area, most_length, "mm2",
+     "area of a node without its caches; of a SIMT node, of each lane of a slot"},
     {"energy.context_area", &EnergyFigures::context_area, most_length, "mm2",
-     "area of each context of a node beyond the first"},
+     "area of each context of a node beyond the first; of a SIMT node, of each other lane of its warps"},
     {"energy.leakage_density", &EnergyFigures::leakage_density, 100'000.0, "mW",
      "power that a mm2 of nodes and caches takes at all times"},
+    {"energy.rt_operation", &EnergyFigures::rt_operation, most_of_operation, "pJ",
+     "of each operation of a ray-tracing unit beside its own; 0 for a fixed function"},
+    {"energy.rt_box_area", &EnergyFigures::rt_box_area, most_length, "mm2",
+     "area of what begins the test of a record's boxes in each cycle; the preset has a unit for each of its "
+     "operations"},
+    {"energy.rt_triangle_area", &EnergyFigures::rt_triangle_area, most_length, "mm2",
+     "area of what begins the test of a triangle in each cycle; the preset as before"},
 }};
 
 struct CacheKey {
@@ -72,7 +80,7 @@ struct CacheKey {
   std::string_view meaning;
 };
 
-constexpr std::array<CacheKey, 6> cache_keys = {{
+constexpr std::array<CacheKey, 9> cache_keys = {{
     {"energy.l1_read", &EnergyFigures::l1, &CacheFigures::read, most_of_access, "pJ",
      "of a look-up in a node's cache, one line; the same for each of split caches"},
     {"energy.l1_write", &EnergyFigures::l1, &CacheFigures::write, most_of_access, "pJ",
@@ -85,6 +93,13 @@ constexpr std::array<CacheKey, 6> cache_keys = {{
      "of a line brought into a second-level cache"},
     {"energy.l2_area", &EnergyFigures::l2, &CacheFigures::area, most_length, "mm2",
      "area of a second-level cache"},
+    {"energy.rt_read", &EnergyFigures::rt, &CacheFigures::read, most_of_access, "pJ",
+     "of reading a ray in a ray-tracing unit before a test"},
+    {"energy.rt_write", &EnergyFigures::rt, &CacheFigures::write, most_of_access, "pJ",
+     "of writing it back after the test"},
+    {"energy.rt_area", &EnergyFigures::rt, &CacheFigures::area, most_length, "mm2",
+     "area of what holds a unit's rays, 128 bytes each, and its registers for lines under way, 16 bytes "
+     "each"},
 }};
 
 void declare_figure(sim::Schema& schema, std::string_view name, double most, std::string_view unit,
@@ -128,7 +143,11 @@ class FigureReader {
     if (name.starts_with("energy.l2_") && machine_.l2.sharing == processors::machine::SecondLevel::none) {
       return Reason{"there is no second level with l2.sharing = \"none\"", "l2.sharing"};
     }
-    if (name == "energy.context_area" && machine_.contexts == 1) {
+    if (name.starts_with("energy.rt_") && !machine_.has_rt_unit()) {
+      return Reason{"there is no ray-tracing unit", "node.kind"};
+    }
+    if (name == "energy.context_area" && machine_.contexts == 1 &&
+        machine_.kind != processors::machine::NodeKind::simt) {
       return Reason{"a node with one context has no other", "node.contexts"};
     }
     const bool image = machine_.scheme == processors::machine::Scheme::image;
@@ -161,7 +180,8 @@ void declare_energy_keys(sim::Schema& schema) {
     declare_figure(schema, key.name, key.most, key.unit, std::string(key.meaning), "the preset's");
   }
   for (const CacheKey& key : cache_keys) {
-    declare_figure(schema, key.name, key.most, key.unit, std::string(key.meaning), "by size, ways and line");
+    declare_figure(schema, key.name, key.most, key.unit, std::string(key.meaning),
+                   key.level == &EnergyFigures::rt ? "by its bytes" : "by size, ways and line");
   }
 }
 

@@ -245,6 +245,13 @@ std::string energy_lines(const run::RunResult& result) {
   fmt::format_to(out, "  {:.4g} rays a joule, {:.4g} uJ s, {:.4g} mm2 of nodes and caches\n",
                  result.figure("rays_a_joule").value_or(0.0), result.figure("energy_delay").value_or(0.0),
                  result.figure("area").value_or(0.0));
+  if (result.machine.has_rt_unit()) {
+    constexpr double square = 1e6;
+    fmt::format_to(
+        out, "  {:.4g} mm2 of them in caches, {:.4g} in ray-tracing units; {:.4g} M rays a second and mm2\n",
+        static_cast<double>(energy.cache_area) / square, static_cast<double>(energy.unit_area) / square,
+        result.figure("rays_a_second_mm2").value_or(0.0) / square);
+  }
   return text;
 }
 

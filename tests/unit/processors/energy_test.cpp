@@ -44,7 +44,8 @@ MachineConfig without_figures() {
 }
 
 std::int64_t sum_of_parts(const EnergyResult& energy) {
-  return energy.operations + energy.l1 + energy.l2 + energy.interconnect + energy.memory + energy.leakage;
+  return energy.operations + energy.unit + energy.l1 + energy.l2 + energy.interconnect + energy.memory +
+         energy.leakage;
 }
 
 TEST(Energy, OfSplitCachesIsThatOfEach) {
@@ -160,6 +161,71 @@ TEST(Energy, OfOperationsIsThatOfTheMixesAndOfTheWordsMoved) {
   EXPECT_EQ(energy_of(machine, built).operations, 2 * 3000 +
                                                       3 * (thousandths(build_mixes().listed) + 2000 + 13000) +
                                                       5 * thousandths(build_mixes().overlap) + 7 * 2000);
+}
+
+// As before, but the unit's operations have no instruction, and each test reads and writes its ray.
+TEST(Energy, OfAUnitIsThatOfItsTestsAndOfTheRaysThatItHolds) {
+  MachineConfig machine = without_figures();
+  machine.kind = NodeKind::simt;
+  EnergyFigures& figures = machine.energy.figures;
+  figures.add = figures.multiply = figures.divide = figures.square_root = figures.compare = figures.integer =
+      figures.load = figures.store = 0.25;
+  figures.instruction = 0.75;
+  figures.rt = {2.0, 3.0, 0.5};
+  EnergyCounts counts;
+  counts.traversal = accel::Traversal::bvh_six;
+  counts.steps.camera_rays = 2;
+  counts.steps.branches = 5;
+  counts.steps.leaves = 4;
+  counts.steps.tests = 7;
+  const OperationMixes& mixes = operation_mixes(counts.traversal);
+  const std::int64_t tests =
+      5 * (thousandths(mixes.branch) + 3000) + 7 * (thousandths(mixes.test) + 2000 + 13000);
+  const EnergyResult energy = energy_of(machine, counts);
+  EXPECT_EQ(energy.operations, 2 * thousandths(mixes.ray[0]));
+  EXPECT_NEAR(static_cast<double>(energy.unit), static_cast<double>(tests) / 4.0 + 12 * 5 * fj_a_pj, 2.0);
+  EXPECT_EQ(energy.total, sum_of_parts(energy));
+  figures.rt_operation = 0.75;
+  EXPECT_EQ(energy_of(machine, counts).unit, tests + 12 * 5 * fj_a_pj);
+  machine.rt.warps = 0;
+  EXPECT_EQ(energy_of(machine, counts).unit, 0);
+  EXPECT_EQ(energy_of(machine, counts).operations, 2 * thousandths(mixes.ray[0]) + tests);
+}
+
+// 3 nodes of 4 warps of 8 lanes, two of which compute at once.
+TEST(Energy, AreaOfASimtNodeIsThatOfItsLanesAndItsUnit) {
+  MachineConfig machine = without_figures();
+  machine.nodes = 3;
+  machine.kind = NodeKind::simt;
+  machine.simt.lanes = 8;
+  machine.simt.warps = 4;
+  machine.simt.issue = 2;
+  machine.rt.warps = 3;
+  machine.rt.box_cycles = 7;
+  machine.rt.triangle_units = 5;
+  EnergyFigures& figures = machine.energy.figures;
+  figures.node_area = 1.0;
+  figures.context_area = 0.5;
+  figures.l1.area = 0.25;
+  figures.rt = {0.0, 0.0, 2.0};
+  figures.rt_box_area = 0.125;
+  figures.rt_triangle_area = 0.0625;
+  const EnergyResult energy = energy_of(machine, {});
+  const std::int64_t unit = 2'000'000 + 4 * 125'000 + 5 * 62'500;  // 24 lanes of 7 cycles need 4 units
+  EXPECT_EQ(energy.unit_area, 3 * unit);
+  EXPECT_EQ(energy.cache_area, 3 * 250'000);
+  EXPECT_EQ(energy.area, 3 * (16'000'000 + 16 * 500'000 + 250'000 + unit));
+  // Without a figure it is that of an adder, a multiplier, ... for each operation: of SimTRaX, at 45 nm.
+  figures.rt_triangle_area = by_shape;
+  const OperationMix& test = operation_mixes(accel::Traversal::octree).test;
+  const double one = (0.003 * static_cast<double>(test.add) + 0.0165 * static_cast<double>(test.multiply) +
+                      0.112 * static_cast<double>(test.divide + test.square_root) +
+                      0.00066 * static_cast<double>(test.compare + test.integer)) *
+                     1000.0 * 45.0 * 45.0 / (65.0 * 65.0);
+  EXPECT_NEAR(static_cast<double>(energy_of(machine, {}).unit_area - 3 * (2'000'000 + 4 * 125'000)),
+              15.0 * one, 15.0);
+  machine.rt.warps = 0;
+  EXPECT_EQ(energy_of(machine, {}).unit_area, 0);
 }
 
 TEST(Energy, OfWhatSwitchesGrowsWithTheSquareOfTheVoltage) {
