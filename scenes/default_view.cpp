@@ -22,6 +22,53 @@ bool has_emitters(const Scene& scene) {
   });
 }
 
+void add_sky(const SkyOptions& options, Scene& scene) {
+  if (options.sky) {
+    scene.background = *options.sky;
+    scene.ambient = *options.sky;
+  }
+  if (options.sun) {
+    const glm::dvec3 size = glm::abs(*options.sun);
+    Light light;
+    light.kind = LightKind::directional;
+    // Divided first, so that no square is too small or too large for a double.
+    light.direction = -glm::normalize(*options.sun / std::max({size.x, size.y, size.z}));
+    light.color = options.sun_color;
+    scene.lights.push_back(light);
+  }
+}
+
+/// Where the options ask for it.
+void add_default_light(Scene& scene, const FileOptions& options) {
+  constexpr const char* added = "a directional one over the camera's shoulder and by ambient light";
+  const bool lacks_light = scene.lights.empty() && !scene.lights_are_all;
+  const bool emits = lacks_light && has_emitters(scene);
+  const bool lights_paths = emits || scene.background != glm::dvec3(0.0);
+  const bool dark = lacks_light && !(lights_paths && options.emitters_light);
+  if (options.default_light == DefaultLight::never) {
+    return;
+  }
+  if (options.default_light == DefaultLight::always) {
+    scene.notes.push_back(std::string("Besides its own lights the scene is lit by ") + added +
+                          ": scene.default_light = \"always\".");
+  } else if (dark) {
+    scene.notes.push_back(std::string("The scene has no light") +
+                          (emits ? " but surfaces that shine, by which only paths are lit" : "") +
+                          "; it is lit by " + added + ".");
+  } else {
+    return;
+  }
+  const glm::dvec3 sight = glm::normalize(scene.camera.at - scene.camera.eye);
+  const glm::dvec3 right = glm::normalize(glm::cross(sight, scene.camera.up));
+  const glm::dvec3 up = glm::cross(right, sight);
+  Light light;
+  light.kind = LightKind::directional;
+  light.direction = glm::normalize(sight + 0.4 * right - 0.6 * up);
+  light.color = glm::dvec3(0.8);
+  scene.lights.push_back(light);
+  scene.ambient = glm::max(scene.ambient, glm::dvec3(0.2));
+}
+
 }  // namespace
 
 void frame_camera(const ViewOptions& view, Scene& scene) {
@@ -29,6 +76,7 @@ void frame_camera(const ViewOptions& view, Scene& scene) {
   const glm::dvec3 center = bounds.lo + (bounds.hi - bounds.lo) * 0.5;
   const double half_diagonal = glm::length(bounds.hi - bounds.lo) * 0.5;
   const double radius = half_diagonal > 0.0 ? half_diagonal : std::max(1.0, glm::length(center)) * 0.5;
+  scene.framed = true;
   scene.camera = Camera{};
   scene.camera.vertical_fov = view.vertical_fov.value_or(scene.camera.vertical_fov);
   scene.camera.at = center;
@@ -52,34 +100,20 @@ void apply_view(const ViewOptions& view, Scene& scene) {
   }
 }
 
-bool add_default_light(Scene& scene, const FileOptions& options) {
-  constexpr const char* added = "a directional one over the camera's shoulder and by ambient light";
-  const bool lacks_light = scene.lights.empty() && !scene.lights_are_all;
-  const bool emits = lacks_light && has_emitters(scene);
-  const bool dark = lacks_light && !(emits && options.emitters_light);
-  if (options.default_light == DefaultLight::never) {
-    return false;
+void add_light(Scene& scene, const FileOptions& options) {
+  add_sky(options.sky, scene);
+  add_default_light(scene, options);
+}
+
+void set_view(Scene& scene, const FileOptions& options) {
+  if (scene.framed) {
+    frame_camera(options.view, scene);
+    if (!options.view.eye) {
+      scene.notes.emplace_back(no_camera_note);
+    }
   }
-  if (options.default_light == DefaultLight::always) {
-    scene.notes.push_back(std::string("Besides its own lights the scene is lit by ") + added +
-                          ": scene.default_light = \"always\".");
-  } else if (dark) {
-    scene.notes.push_back(std::string("The scene has no light") +
-                          (emits ? " but surfaces that shine, by which only paths are lit" : "") +
-                          "; it is lit by " + added + ".");
-  } else {
-    return false;
-  }
-  const glm::dvec3 sight = glm::normalize(scene.camera.at - scene.camera.eye);
-  const glm::dvec3 right = glm::normalize(glm::cross(sight, scene.camera.up));
-  const glm::dvec3 up = glm::cross(right, sight);
-  Light light;
-  light.kind = LightKind::directional;
-  light.direction = glm::normalize(sight + 0.4 * right - 0.6 * up);
-  light.color = glm::dvec3(0.8);
-  scene.lights.push_back(light);
-  scene.ambient = glm::max(scene.ambient, glm::dvec3(0.2));
-  return true;
+  apply_view(options.view, scene);
+  add_light(scene, options);
 }
 
 }  // namespace marti::scenes

@@ -26,17 +26,28 @@ struct ViewOptions {
   std::optional<double> vertical_fov;  ///< full angle in radians, above 0 and below pi
 };
 
+/// The user's own sky and sun.
+struct SkyOptions {
+  /// Linear RGB, 0 to 1e9: what is seen where there is nothing, and the ambient light, in place of the
+  /// scene's.
+  std::optional<glm::dvec3> sky;
+  /// The direction towards the sun, not 0: a directional light beside the scene's own.
+  std::optional<glm::dvec3> sun;
+  glm::dvec3 sun_color{1.0};  ///< 0 to 1e9, as Light::color
+};
+
 struct FileOptions {
   std::string scene;   ///< index or name; empty: the file's default, else the first
   std::string camera;  ///< index or name of a camera of the file; empty: the scene's first perspective one
   ViewOptions view;    ///< instead of the camera, or of parts of it, in every pose
+  SkyOptions sky;      ///< also in every pose
   /// Index or name of the animation that plays; empty: the first, if the file has one; "none": the static
   /// pose, unless an animation has that name.
   std::string animation;
   double time = 0.0;  ///< of the pose that is asked for: seconds from the animation's beginning
   /// automatic: only a scene that has no light and does not say that none is missing (Scene::lights_are_all).
   DefaultLight default_light = DefaultLight::automatic;
-  bool emitters_light = false;  ///< triangles that emit light count as lights: paths find them
+  bool emitters_light = false;  ///< triangles that emit light and a sky count as lights: paths find them
   /// Refuses what else is replaced with a note because many files are so: docs/scenes.md lists it.
   bool strict = false;
   /// If set, images are not decoded: textures have their size and their file, but no texels (see

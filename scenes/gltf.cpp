@@ -1,6 +1,7 @@
 #include "scenes/gltf.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <new>
 #include <optional>
 #include <sstream>
@@ -165,8 +166,10 @@ class GltfPoses : public PoseSource {
       }
     }
     if (still_.triangles.empty()) {
-      model_.fail(meshes.bad_triangles() > 0 ? "none of its triangles has finite positions"
-                                             : "the scene has no triangles");
+      if (meshes.bad_triangles() == 0) {
+        model_.fail_empty();
+      }
+      model_.fail("none of its triangles has finite positions");
     }
     if (!still_.normals.empty()) {
       still_.normals.resize(still_.positions.size(), glm::dvec3(0.0));
@@ -210,16 +213,15 @@ class GltfPoses : public PoseSource {
       place_vertices(pose, first);
       frame_camera(model_.options().view, first);
       still_.camera = first.camera;
+      still_.framed = true;
       if (!model_.options().view.eye) {
         still_.notes.emplace_back(no_camera_note);
       }
     }
     apply_view(model_.options().view, still_);
     gltf::add_lights(model_, pose.nodes, still_, left_out);
-    has_lights_ = !still_.lights.empty();
-    if (add_default_light(still_, model_.options())) {
-      default_light_ = still_.lights.back();
-    }
+    own_lights_ = still_.lights.size();
+    add_light(still_, model_.options());
   }
 
   [[nodiscard]] Pose pose_at(double seconds) const {
@@ -257,13 +259,12 @@ class GltfPoses : public PoseSource {
       static_cast<void>(gltf::set_camera(model_, pose.nodes, scene));
       apply_view(model_.options().view, scene);
     }
-    if (has_lights_) {
+    if (own_lights_ > 0) {
       scene.lights.clear();
       LeftOut noted_already = model_.replaced();
       gltf::add_lights(model_, pose.nodes, scene, noted_already);
-      if (default_light_) {
-        scene.lights.push_back(*default_light_);
-      }
+      const auto added = still_.lights.begin() + static_cast<std::ptrdiff_t>(own_lights_);
+      scene.lights.insert(scene.lights.end(), added, still_.lights.end());
     }
     if (shrunk > 0) {
       scene.notes.push_back(std::to_string(shrunk) +
@@ -285,8 +286,7 @@ class GltfPoses : public PoseSource {
   std::uint64_t morph_targets_ = 0;
   FileUse use_;
   bool has_camera_ = false;
-  bool has_lights_ = false;             // of the file
-  std::optional<Light> default_light_;  // beside them
+  std::size_t own_lights_ = 0;  // of the file; in still_ others follow them
 };
 
 }  // namespace

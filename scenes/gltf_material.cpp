@@ -248,7 +248,7 @@ std::uint32_t Materials::texture_index(int texture, const std::string& user) {
   }
   Texture decoded;
   try {
-    decoded = open_image(model_, find_image(image, name), decode_);
+    decoded = open_image(model_, find_image(image, name), decode_, left_out_);
   } catch (const ImageError& error) {
     left_out_.replace(no_image, error.what());
     return no_texture;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,27 @@ auto read_image(const SourceFile& file, const ImageFile& image, const Decode& de
   }
 }
 
+/// By the sizer of the options, if there is one.
+std::optional<ImageSize> size_of(const SourceFile& file, const ImageFile& image) {
+  const ImageSizer& sizer = file.options().size_first ? file.options().size_first : file.options().size_only;
+  return sizer ? std::optional(read_image(file, image, sizer)) : std::nullopt;
+}
+
+/// For both the samples from the decoder and the texels made of them.
+void require_memory(const SourceFile& file, const std::optional<ImageSize>& size) {
+  if (size) {
+    file.require_memory(2 * bytes_a_texel * size->width * size->height, textures_take);
+  }
+}
+
+Texture decoded(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
+  Texture texture = read_image(file, image, decode);
+  sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
+              "an image decoder returned a texture whose size does not match its texels");
+  texture.name = image.name;
+  return texture;
+}
+
 Texture size_image(const SourceFile& file, const ImageFile& image) {
   const ImageSize size = read_image(file, image, file.options().size_only);
   sim::ensure(size.width > 0 && size.height > 0, "an image sizer returned an image of no size");
@@ -54,35 +76,31 @@ Texture size_image(const SourceFile& file, const ImageFile& image) {
 
 Texture decode_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
   require_image(file, image, decode);
-  const ImageSizer& sizer = file.options().size_first ? file.options().size_first : file.options().size_only;
-  if (sizer) {
-    const ImageSize size = read_image(file, image, sizer);
-    // Both the samples from the decoder and the texels made of them.
-    file.require_memory(2 * bytes_a_texel * size.width * size.height, textures_take);
-  }
-  Texture texture;
-  try {
-    texture = read_image(file, image, decode);
-  } catch (const ImageError& error) {
-    if (!sizer) {
-      throw;
-    }
-    // With its size known it has a place among the textures, also where nobody decodes it: it cannot be
-    // replaced by none only where somebody does.
-    throw sim::UserError(error.what());
-  }
-  sim::ensure(texture.width > 0 && texture.height > 0 && texture.texels.size() == texture.size(),
-              "an image decoder returned a texture whose size does not match its texels");
-  texture.name = image.name;
-  return texture;
+  require_memory(file, size_of(file, image));
+  return decoded(file, image, decode);
 }
 
-Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode) {
+Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode,
+                   LeftOut& left_out) {
+  require_image(file, image, decode);
   if (file.options().size_only) {
-    require_image(file, image, decode);
     return size_image(file, image);
   }
-  Texture texture = decode_image(file, image, decode);
+  const std::optional<ImageSize> size = size_of(file, image);
+  require_memory(file, size);
+  Texture texture;
+  try {
+    texture = decoded(file, image, decode);
+  } catch (const ImageError& error) {
+    if (!size) {
+      throw;
+    }
+    left_out.replace(std::string(undecoded_textures), error.what());
+    texture.width = size->width;
+    texture.height = size->height;
+    texture.texels.assign(texture.size(), {255, 255, 255, 255});
+    texture.name = image.name;
+  }
   file.take_memory(texture.size() * bytes_a_texel, textures_take);
   return texture;
 }

@@ -171,7 +171,7 @@ std::uint32_t ObjMaterials::texture_of(const Known& known) {
   }
   try {
     const ImageFile image{known.source.texture, std::as_bytes(std::span(*bytes))};
-    Texture texture = open_image(file_, image, decode_);
+    Texture texture = open_image(file_, image, decode_, left_out_);
     texture.repeat_u = !known.source.clamp;
     texture.repeat_v = !known.source.clamp;
     place->second = static_cast<std::uint32_t>(scene_.textures.size());

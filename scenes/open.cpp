@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
+#include <system_error>
 #include <utility>
 
 #include "scenes/default_view.h"
+#include "scenes/folder.h"
 #include "scenes/gltf.h"
 #include "scenes/obj.h"
 #include "scenes/part_error.h"
@@ -43,9 +46,21 @@ void refuse_parts(std::string_view spec, const char* kind, const FileOptions& op
   }
 }
 
+/// Throws UserError when `spec`, which names no recipe, is a folder without the slash that says so.
+void refuse_folder(std::string_view spec, const OpenOptions& options) {
+  const std::string_view name = spec.substr(0, spec.find(':'));
+  const std::span<const ProceduralScene> recipes = procedural_scenes();
+  std::error_code error;
+  if (std::none_of(recipes.begin(), recipes.end(), [&](const auto& recipe) { return recipe.name == name; }) &&
+      std::filesystem::is_directory(path_of(spec, options), error)) {
+    throw sim::UserError("scene '" + sim::shown(spec) + "' is a folder: write '" + sim::shown(spec) +
+                         "/' for all scene files in it");
+  }
+}
+
 }  // namespace
 
-bool names_a_file(std::string_view spec) { return !ending_of(spec).empty(); }
+bool names_a_file(std::string_view spec) { return spec.ends_with('/') || !ending_of(spec).empty(); }
 
 AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
   const std::string ending = ending_of(spec);
@@ -60,10 +75,14 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
     refuse_parts(spec, "a PLY file", options.file);
     return open_ply(path_of(spec, options), options.file);
   }
+  if (spec.ends_with('/')) {
+    refuse_parts(spec, "a folder", options.file);
+    return open_folder(path_of(spec, options), options.file, decode);
+  }
+  refuse_folder(spec, options);
   Scene scene = make_procedural(spec, options.file.memory);
   refuse_parts(spec, "a procedural scene", options.file);
-  apply_view(options.file.view, scene);
-  add_default_light(scene, options.file);
+  set_view(scene, options.file);
   return AnimatedScene(std::move(scene));
 }
 

@@ -22,14 +22,15 @@ struct OpenOptions {
 /// The endings of the names of files that can be read, without the dot.
 inline constexpr std::array<std::string_view, 4> file_endings = {"gltf", "glb", "obj", "ply"};
 
-/// Opens `spec`: a file when it has one of these endings (in any case), else a procedural scene such as
-/// "teapot:12", which has one pose. `options.file.time` is ignored. For a procedural scene and for a file
-/// that is no glTF, choosing a scene, a camera or an animation other than "none" is an error. Throws
-/// UserError as open_gltf, open_obj, open_ply and make_procedural do.
+/// Opens `spec`: a file when it has one of these endings (in any case), a folder of such files
+/// (scenes/folder.h) when it ends with a slash, else a procedural scene such as "teapot:12"; all but glTF
+/// files have one pose. `options.file.time` is ignored. Choosing a scene, a camera or an animation other than
+/// "none" is an error for all but a glTF file. Throws UserError as open_gltf, open_obj, open_ply, open_folder
+/// and make_procedural do.
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 
-/// Whether `spec` is the name of a file, by its ending, rather than of a procedural scene.
+/// Whether `spec` is the name of a file or a folder, by its ending, rather than of a procedural scene.
 [[nodiscard]] bool names_a_file(std::string_view spec);
 
 /// The pose at `options.file.time`. A time other than 0 is an error if the scene does not move. Unless `use`

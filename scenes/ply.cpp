@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,9 +44,14 @@ class PlyReader {
         memory_(file, "its geometry takes") {}
 
   AnimatedScene read() {
-    const PlyElement& vertex = element("vertex");
-    static_cast<void>(element("face"));
-    vertices_ = vertex.count;
+    const PlyElement* const vertex = element("vertex");
+    if (vertex == nullptr) {
+      file_.fail("it has no element 'vertex'");
+    }
+    if (element("face") == nullptr) {
+      file_.fail_empty("it has no element 'face'");
+    }
+    vertices_ = vertex->count;
     if (vertices_ > file_.options().max_triangles) {
       file_.fail("it has " + std::to_string(vertices_) + " vertices; at most " +
                  std::to_string(file_.options().max_triangles) + " are accepted");
@@ -70,13 +76,11 @@ class PlyReader {
   }
 
  private:
-  [[nodiscard]] const PlyElement& element(const char* name) const {
+  /// The element of this name; nullptr if the file has none.
+  [[nodiscard]] const PlyElement* element(std::string_view name) const {
     const auto found = std::find_if(header_.elements.begin(), header_.elements.end(),
                                     [&](const PlyElement& e) { return e.name == name; });
-    if (found == header_.elements.end()) {
-      file_.fail("it has no element '" + std::string(name) + "'");
-    }
-    return *found;
+    return found == header_.elements.end() ? nullptr : &*found;
   }
 
   /// Reads a property of an entry that nothing is done with.

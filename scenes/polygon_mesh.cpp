@@ -106,16 +106,14 @@ void PolygonMesh::cut_fan(std::size_t corners) {
 
 void PolygonMesh::finish(const LeftOut& left_out) {
   if (scene_.triangles.empty()) {
-    file_.fail(bad_ > 0 ? "none of its polygons has positions that are finite and not beyond 1e30"
-                        : "the scene has no triangles");
+    if (bad_ == 0) {
+      file_.fail_empty();
+    }
+    file_.fail("none of its polygons has positions that are finite and not beyond 1e30");
   }
   scene_.name = file_.path().filename().string();
-  frame_camera(file_.options().view, scene_);
-  if (!file_.options().view.eye) {
-    scene_.notes.emplace_back(no_camera_note);
-  }
-  apply_view(file_.options().view, scene_);
-  add_default_light(scene_, file_.options());
+  scene_.framed = true;
+  set_view(scene_, file_.options());
   note_left_out(left_out, scene_);
   note_bad_positions(bad_, "polygons", scene_);
   if (crossing_ > 0) {

@@ -92,6 +92,7 @@ struct Scene {
   bool lights_are_all =
       false;  ///< none is missing, even if there is none: a recipe's, and a file's that says so
   Camera camera;
+  bool framed = false;  ///< the file has no camera; this one sees all of the scene
   glm::dvec3 background{0.0};
   glm::dvec3 ambient{0.0};         ///< ambient light, multiplied by a material's colour and diffuse weight
   std::uint64_t polygons = 0;      ///< polygons of the source, before triangulation

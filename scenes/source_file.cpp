@@ -51,6 +51,10 @@ void SourceFile::fail(const std::string& what) const {
   throw sim::UserError(sim::shown(path_.string()) + ": " + what);
 }
 
+void SourceFile::fail_empty(const std::string& what) const {
+  throw NoTriangles(sim::shown(path_.string()) + ": " + what);
+}
+
 void SourceFile::fail_choice(const char* part, const std::string& what) const {
   throw PartError(part, sim::shown(path_.string()) + ": " + what);
 }

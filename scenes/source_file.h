@@ -7,9 +7,16 @@
 #include <string>
 
 #include "scenes/file_options.h"
+#include "sim/error.h"
 #include "sim/memory_budget.h"
 
 namespace marti::scenes {
+
+/// The file is well, but has no triangles.
+class NoTriangles : public sim::UserError {
+ public:
+  using UserError::UserError;
+};
 
 class SourceFile {
  public:
@@ -30,6 +37,8 @@ class SourceFile {
 
   /// Throws a UserError that begins with the file's path.
   [[noreturn]] void fail(const std::string& what) const;
+  /// Throws NoTriangles.
+  [[noreturn]] void fail_empty(const std::string& what = "the scene has no triangles") const;
   /// Throws a PartError: the file lacks the part (scenes/part_error.h) that the options ask for.
   [[noreturn]] void fail_choice(const char* part, const std::string& what) const;
 

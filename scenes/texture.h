@@ -42,6 +42,10 @@ using ImageEncoder = std::function<std::vector<std::byte>(const Texture& texture
 [[nodiscard]] Texture texture_from_samples(std::string_view name, std::uint32_t width, std::uint32_t height,
                                            std::uint32_t channels, std::span<const std::uint8_t> samples);
 
+/// What a note counts when texels cannot be decoded though an image's size is known: such a texture is white.
+inline constexpr std::string_view undecoded_textures =
+    "textures that cannot be decoded, by white ones of their size";
+
 struct TextureSample {
   glm::dvec3 color{0.0};    ///< linear, 0 to 1
   std::uint32_t texel = 0;  ///< the texel that was read: row * width + column

@@ -222,7 +222,7 @@ OperationMix mean_mix(const accel::OperationCounts& counts, std::uint64_t steps)
 MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                                       const accel::Structure& structure,
                                       const program::RenderOptions& options) {
-  const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
+  const scenes::ImagePlane plane = program::image_plane(scene.camera, options);
   const program::Emitters emitters =
       options.integrator == program::Integrator::path ? program::Emitters(scene) : program::Emitters();
   accel::Mailboxed<CountingRecorder> recorder(structure, options.mailboxes);

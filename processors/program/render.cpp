@@ -26,6 +26,14 @@ void check_options(const RenderOptions& options) {
   };
   in_range("width", options.width, 1, max_size);
   in_range("height", options.height, 1, max_size);
+  if (const std::optional<Window>& window = options.window) {
+    in_range("image_width", window->image_width, 1, max_size);
+    in_range("image_height", window->image_height, 1, max_size);
+    sim::ensure(window->left <= window->image_width && window->top <= window->image_height &&
+                    options.width <= window->image_width - window->left &&
+                    options.height <= window->image_height - window->top,
+                "render: the window reaches out of its image");
+  }
   in_range("max_depth", options.max_depth, 1, max_ray_depth);
   in_range("samples", options.samples, 1, max_samples);
   if (!(options.min_weight >= 0.0 && options.min_weight <= 1.0)) {
@@ -62,9 +70,8 @@ void check_options(const RenderOptions& options) {
 /// The voxels of the frame; std::nullopt when no cell can be small, because then the exact walk suffices.
 std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel::Octree& octree,
                                          const RenderOptions& options, unsigned threads) {
-  const unsigned level =
-      first_small_level(octree.bounds(), scene.camera.image_plane(options.width, options.height),
-                        options.voxel_cut, options.max_depth);
+  const unsigned level = first_small_level(octree.bounds(), image_plane(scene.camera, options),
+                                           options.voxel_cut, options.max_depth);
   if (level > octree.levels().size()) {
     return std::nullopt;
   }
@@ -100,6 +107,11 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
 }
 
 }  // namespace
+
+scenes::ImagePlane image_plane(const scenes::Camera& camera, const RenderOptions& options) {
+  return options.window ? camera.image_plane(options.window->image_width, options.window->image_height)
+                        : camera.image_plane(options.width, options.height);
+}
 
 RayCounts& RayCounts::operator+=(const RayCounts& other) {
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "accel/walk_order.h"
 #include "processors/program/image.h"
@@ -29,9 +30,20 @@ inline constexpr std::uint32_t max_samples = 1024;
 
 struct Frame;
 
+/// A frame may be a window of an image: its pixel (0, 0) is then the image's pixel (left, top).
+struct Window {
+  std::uint32_t image_width = 0;   ///< of the image: at least left + the frame's width, at most 32768
+  std::uint32_t image_height = 0;  ///< at least top + the frame's height, at most 32768
+  std::uint32_t left = 0;
+  std::uint32_t top = 0;
+};
+
 struct RenderOptions {
-  std::uint32_t width = 512;   ///< pixels, 1 to 32768
-  std::uint32_t height = 512;  ///< pixels, 1 to 32768
+  std::uint32_t width = 512;   ///< pixels of the frame, 1 to 32768
+  std::uint32_t height = 512;  ///< pixels of the frame, 1 to 32768
+  /// If given, each pixel of the frame has the rays, random numbers and colour, bit for bit, of the image's
+  /// pixel in its place; else the frame is the whole image.
+  std::optional<Window> window = std::nullopt;
   std::uint32_t max_depth =
       5;  ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
   Integrator integrator = Integrator::whitted;
@@ -72,6 +84,9 @@ struct RenderOptions {
   sim::WorkMeter* meter = nullptr;
 };
 
+/// The plane through which the frame's rays go: that of its whole image.
+[[nodiscard]] scenes::ImagePlane image_plane(const scenes::Camera& camera, const RenderOptions& options);
+
 /// Rays of each kind, in the order of RayKind.
 struct RayCounts {
   std::array<std::uint64_t, ray_kinds> traced{};
@@ -87,8 +102,9 @@ struct RayCounts {
 struct Frame {
   Image image;
   RayCounts rays;
-  /// A hash of the outcome of every ray (pixel, order within the pixel, primitive id, bits of t; for a shadow
-  /// ray only whether it was blocked). Equal for every structure, machine and number of threads.
+  /// A hash of the outcome of every ray (pixel of the whole image, order within the pixel, primitive id, bits
+  /// of t; for a shadow ray only whether it was blocked). Equal for every structure, machine and number of
+  /// threads. It is a sum over the pixels, so that those of windows add up to that of their image.
   std::uint64_t hit_hash = 0;
   std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record
   std::uint32_t voxels = 0;            ///< averaged materials made for the voxel cut

@@ -34,7 +34,7 @@ struct Worker {
 template <typename Real, typename Structure, typename Recorder>
 void render_rows(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
                  const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
-  const scenes::ImagePlane plane = scene.camera.image_plane(options.width, options.height);
+  const scenes::ImagePlane plane = image_plane(scene.camera, options);
   tbb::enumerable_thread_specific<Worker<Recorder>> workers;
 
   const auto render_row = [&](std::uint32_t y) {

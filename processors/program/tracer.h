@@ -68,12 +68,18 @@ class Tracer {
         plane_(plane),
         options_(options),
         recorder_(recorder),
+        left_(options.window ? options.window->left : 0),
+        top_(options.window ? options.window->top : 0),
         share_(1.0 / options.samples),
         reach_(largest_side(structure.triangles().bounds())),
         points_(options.samples, options.seed) {}
 
-  /// The colour of pixel (x, y): of the ray through its centre, or the mean of its samples.
-  Vec trace(std::uint32_t x, std::uint32_t y) {
+  /// The colour of the frame's pixel (column, row): of the ray through its centre, or the mean of its
+  /// samples.
+  Vec trace(std::uint32_t column, std::uint32_t row) {
+    // All that depends on the pixel depends on its place in the whole image.
+    const std::uint32_t x = left_ + column;
+    const std::uint32_t y = top_ + row;
     recorder_.begin_pixel();
     color_ = Vec();
     pixel_hash_ = 0;
@@ -418,6 +424,8 @@ class Tracer {
   scenes::ImagePlane plane_;
   RenderOptions options_;
   Recorder& recorder_;
+  std::uint32_t left_;  ///< of the frame in its image
+  std::uint32_t top_;
   double share_;  ///< weight of a sample in its pixel
   double reach_;  ///< largest side of the scene's box
   SamplePoints points_;

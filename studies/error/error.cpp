@@ -22,10 +22,10 @@ tables::StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter) {
   const processors::program::RenderOptions& render = error.frame.render;
   const processors::program::RenderOptions small = keys::made_small(render, error.side);
   output.report = fmt::format(
-      "Error against run time of {}\nframe time: {} x {}, {} a pixel, {}\nimage: {} x {}, at most {} in a "
+      "Error against run time of {}\nframe time: {}, {} a pixel, {}\nimage: {}, at most {} in a "
       "row, {} a pixel; each knob is held against its own exact setting\n",
-      error.frame.scene, render.width, render.height, tables::counted(render.samples, "sample"),
-      tables::counted(error.machine.all_nodes(), "node"), small.width, small.height,
+      error.frame.scene, keys::size_text(render), tables::counted(render.samples, "sample"),
+      tables::counted(error.machine.all_nodes(), "node"), keys::size_text(small),
       tables::counted(small.max_depth, "ray"), tables::counted(small.samples, "sample"));
   const std::vector<std::string> answers = answers_of(settings);
   tables::Table answer_table("host_error_answer",

@@ -84,8 +84,8 @@ void add_frame_ways(const ErrorConfig& config, std::vector<Setting>& settings) {
   }
   for (const std::uint32_t divisor : config.divisors) {
     keys::FrameConfig smaller = frame;
-    smaller.render.width = std::max(1U, frame.render.width / divisor);
-    smaller.render.height = std::max(1U, frame.render.height / divisor);
+    smaller.render = keys::made_small(
+        frame.render, std::max(frame.render.width, frame.render.height) / static_cast<double>(divisor));
     const double pixels = static_cast<double>(frame.render.width) * frame.render.height /
                           (static_cast<double>(smaller.render.width) * smaller.render.height);
     add("smaller image", fmt::format("{} x {}", smaller.render.width, smaller.render.height), divisor,

@@ -103,8 +103,7 @@ std::string estimate_text(const run::RunResult& result, const EstimatedRun& run,
   const double points = 100.0 * machine.half_width[Figure::use];
   const auto two_digits = [](double number) { return fmt::format("{:.2f}", number); };
   return show::scene_summary_of(result) +
-         fmt::format("image         {} x {}, about {} rays\n", result.frame_config.render.width,
-                     result.frame_config.render.height,
+         fmt::format("image         {}, about {} rays\n", keys::size_text(result.frame_config.render),
                      tables::grouped(static_cast<std::uint64_t>(std::llround(traced.rays)))) +
          fmt::format(
              "left out      {:.1f} % of the pixels, with about {:.1f} % of the rays and {} of work log: {} "

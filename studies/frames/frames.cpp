@@ -105,7 +105,7 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
   return fmt::format(
       "The cycle \"build, render\", frame by frame\n"
       "scene    {}, {} at {:g} a second, the first is number {}\n"
-      "images   {} x {}{}\n"
+      "images   {}{}\n"
       "machine  {} at {}, operations as \"{}\"\n"
       "\n"
       "rebuild_all      the whole tree is built before each frame\n"
@@ -113,7 +113,7 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
       "dynamic          built before each frame to {}, the rest on demand ({})\n"
       "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
       frames.frame.scene, tables::counted(count, "frame"), frames.frame.frames.rate,
-      frames.frame.frames.first, frames.frame.render.width, frames.frame.render.height,
+      frames.frame.frames.first, keys::size_text(frames.frame.render),
       frames.verify ? ", each equal to that of a tree built from nothing" : "",
       tables::counted(frames.machine.all_nodes(), "node"),
       sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"), initial,

@@ -4,8 +4,14 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <memory>
+#include <mutex>
 
 #include "sim/error.h"
 
@@ -17,11 +23,64 @@ constexpr int most_pixels_a_side = 65536;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28U;  // 1 GiB of RGBA
 
 // A name whose extension leads OpenImageIO to the codec: the images inside a glTF file often have no name,
-// and are PNG or JPEG by the format's rules.
+// and are PNG, JPEG or WebP by the format's rules.
 std::string codec_name(std::span<const std::byte> file) {
-  const bool jpeg = file.size() > 2 && file[0] == std::byte{0xff} && file[1] == std::byte{0xd8};
-  return jpeg ? "texture.jpg" : "texture.png";
+  const std::string_view head(reinterpret_cast<const char*>(file.data()),
+                              std::min<std::size_t>(file.size(), 12));
+  return head.starts_with("\xff\xd8")                         ? "texture.jpg"
+         : head.starts_with("RIFF") && head.ends_with("WEBP") ? "texture.webp"
+                                                              : "texture.png";
 }
+
+// While one lives, what libpng writes to standard error is dropped: OpenImageIO leaves it no other place for
+// its errors, which the caller's message has too, and for its warnings about images that it can read. What
+// others write to standard error meanwhile comes after it. One at a time.
+class WithoutLinesOfLibpng {
+ public:
+  WithoutLinesOfLibpng() : lock_(mutex()) {
+    static_cast<void>(std::fflush(stderr));
+    before_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    written_ = memfd_create("standard error", MFD_CLOEXEC);
+    if (before_ >= 0 && written_ >= 0) {
+      static_cast<void>(dup2(written_, STDERR_FILENO));
+    }
+  }
+  WithoutLinesOfLibpng(const WithoutLinesOfLibpng&) = delete;
+  WithoutLinesOfLibpng& operator=(const WithoutLinesOfLibpng&) = delete;
+  ~WithoutLinesOfLibpng() {
+    if (before_ >= 0 && written_ >= 0) {
+      static_cast<void>(std::fflush(stderr));
+      static_cast<void>(dup2(before_, STDERR_FILENO));
+      pass_on();
+    }
+    static_cast<void>(close(before_));
+    static_cast<void>(close(written_));
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+
+  void pass_on() const {
+    std::string text(static_cast<std::size_t>(std::max<off_t>(0, lseek(written_, 0, SEEK_END))), '\0');
+    const ssize_t size = pread(written_, text.data(), text.size(), 0);
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, size)));
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+      const std::string_view line(text.data() + begin, end - begin);
+      if (!line.starts_with("libpng ")) {
+        static_cast<void>(std::fwrite(line.data(), 1, line.size(), stderr));
+      }
+      begin = end;
+    }
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  int before_ = -1;
+  int written_ = -1;
+};
 
 OIIO::ImageSpec spec_of(scenes::ImageSize size, std::size_t channels, const OIIO::TypeDesc& type) {
   return OIIO::ImageSpec(static_cast<int>(size.width), static_cast<int>(size.height),
@@ -61,6 +120,7 @@ struct OpenImage {
     size = {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
   }
 
+  WithoutLinesOfLibpng quiet;  // until `in` is gone
   OIIO::Filesystem::IOMemReader memory;
   std::string label;
   std::unique_ptr<OIIO::ImageInput> in;

@@ -37,10 +37,10 @@ class ImageCodec {
   virtual void write_png(const std::string& file, scenes::ImageSize size,
                          std::span<const std::uint8_t> samples) const = 0;
 
-  /// A PNG or JPEG file in memory; `name` is for messages.
+  /// A PNG, JPEG or WebP file in memory; `name` is for messages.
   [[nodiscard]] virtual DecodedImage decode(std::span<const std::byte> file, std::string_view name) const = 0;
 
-  /// The size of a PNG or JPEG file in memory, from its head alone.
+  /// The size of such a file in memory, from its head alone.
   [[nodiscard]] virtual scenes::ImageSize size_of(std::span<const std::byte> file,
                                                   std::string_view name) const = 0;
 

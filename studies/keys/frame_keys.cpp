@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "memory/layout.h"
 #include "processors/walk/node_order.h"
 #include "sim/mapped.h"
@@ -110,16 +112,35 @@ void read_for_units(sim::Config& config, FrameConfig& frame) {
 
 processors::program::RenderOptions made_small(processors::program::RenderOptions options, double side) {
   const double factor = std::min(1.0, side / std::max(options.width, options.height));
-  options.width = std::max(1U, static_cast<std::uint32_t>(options.width * factor));
-  options.height = std::max(1U, static_cast<std::uint32_t>(options.height * factor));
+  // Whole pixels; the smallest fraction is far above the rounding error that is added.
+  const auto whole = [&](std::uint32_t pixels) { return static_cast<std::uint32_t>(pixels * factor + 1e-9); };
+  const auto small = [&](std::uint32_t pixels) { return std::max(1U, whole(pixels)); };
+  options.width = small(options.width);
+  options.height = small(options.height);
+  if (std::optional<processors::program::Window>& window = options.window) {
+    window->image_width = std::max(options.width, small(window->image_width));
+    window->image_height = std::max(options.height, small(window->image_height));
+    window->left = std::min(whole(window->left), window->image_width - options.width);
+    window->top = std::min(whole(window->top), window->image_height - options.height);
+  }
   return options;
+}
+
+std::string size_text(const processors::program::RenderOptions& options) {
+  const std::optional<processors::program::Window>& window = options.window;
+  return fmt::format("{} x {}", options.width, options.height) +
+         (window ? fmt::format(" at ({}, {}) of {} x {}", window->left, window->top, window->image_width,
+                               window->image_height)
+                 : "");
 }
 
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
-  schema.text("scene.source", "teapot:12",
-              "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file "
-              "relative to the configuration (with --set: to the current directory)");
+  schema.text(
+      "scene.source", "teapot:12",
+      "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file, "
+      "or a folder of such files with a slash at its end, relative to the configuration (with --set: to the "
+      "current directory)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
   schema.reals("scene.eye", {}, {-1e30, 1e30}, "",
@@ -131,13 +152,23 @@ void declare_frame_keys(sim::Schema& schema) {
                "the direction that is up, three coordinates; empty: the camera's");
   schema.real("scene.field_of_view", 0.0, {0.0, 179.9}, "degrees",
               "angle between the lower and the upper edge of the image; 0: the camera's");
+  schema.reals("scene.sky", {}, {0.0, 1e9}, "",
+               "colour of a sky, linear red, green and blue: what is seen where there is nothing, and the "
+               "ambient light, by which surfaces that the whole sky would reach look the same as paths show "
+               "them; empty: the scene's own background and ambient light");
+  schema.reals("scene.sun", {}, {-1e30, 1e30}, "",
+               "the direction towards a sun, three coordinates: a directional light beside the scene's own; "
+               "empty: none");
+  schema.reals("scene.sun_color", {1.0, 1.0, 1.0}, {0.0, 1e9}, "",
+               "colour of the sun, linear red, green and blue: a matt white surface that faces the sun has "
+               "this colour");
   schema.text("scene.animation", "",
               "animation of the file that plays, by index or name; empty: the first, if there is one; none: "
               "the file's static pose");
   schema.choice("scene.default_light", "auto", names(scenes::default_light_names),
-                "auto: a file without lights gets one over the camera's shoulder and ambient light, with "
-                "image.integrator = \"path\" only if no triangle of it emits light; always: every scene "
-                "gets them beside its own; never: none does");
+                "auto: a file without lights, if there is no sun, gets one over the camera's shoulder and "
+                "ambient light, with image.integrator = \"path\" only if no triangle of it emits light and "
+                "there is no sky; always: every scene gets them beside its own; never: none does");
   schema.boolean("scene.strict", false,
                  "refuse a file with parts that are missing or that its format does not allow; else what can "
                  "be replaced is, with a note (docs/scenes.md)");
@@ -153,6 +184,9 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.section("image", "the image and the rays it takes");
   schema.integer("image.width", 512, {1, 32768}, "pixels", "columns");
   schema.integer("image.height", 512, {1, 32768}, "pixels", "rows");
+  schema.integers("image.region", {}, {0, 32768}, "pixels",
+                  "window of the image that is rendered: [column and row of its upper left pixel, width, "
+                  "height], from 0; its pixels are those of the whole image; empty: all of it");
   schema.choice(
       "image.integrator", "whitted", names(processors::program::integrator_names),
       "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
@@ -239,12 +273,53 @@ std::filesystem::path directory_of_scene(const sim::Config& config) {
 
 namespace {
 
-std::optional<glm::dvec3> three(const sim::Config& config, std::string_view key) {
+std::optional<glm::dvec3> three(const sim::Config& config, std::string_view key,
+                                const char* what = "coordinates, [x, y, z]") {
   const std::vector<double> numbers = config.reals(key);
   if (!numbers.empty() && numbers.size() != 3) {
-    config.fail(key, "must be three coordinates, [x, y, z], not " + std::to_string(numbers.size()));
+    config.fail(key, std::string("must be three ") + what + ", not " + std::to_string(numbers.size()));
   }
   return numbers.empty() ? std::nullopt : std::optional(glm::dvec3(numbers[0], numbers[1], numbers[2]));
+}
+
+scenes::SkyOptions read_sky(sim::Config& config) {
+  constexpr const char* colors = "numbers, [red, green, blue]";
+  scenes::SkyOptions sky;
+  sky.sky = three(config, "scene.sky", colors);
+  sky.sun = three(config, "scene.sun");
+  if (sky.sun == glm::dvec3(0.0)) {
+    config.fail("scene.sun", "must be a direction, not [0, 0, 0]");
+  }
+  if (sky.sun) {
+    sky.sun_color = three(config, "scene.sun_color", colors).value_or(sky.sun_color);
+  }
+  config.mark_unused_reason("scene.sun_color", "there is no sun", "scene.sun");
+  return sky;
+}
+
+/// With the image's sizes in `render`: makes the frame a window of it.
+void read_region(const sim::Config& config, processors::program::RenderOptions& render) {
+  constexpr const char* key = "image.region";
+  const std::vector<std::int64_t> region = config.integers(key);
+  if (region.empty()) {
+    return;
+  }
+  if (region.size() != 4) {
+    config.fail(key, "must be [left, top, width, height], not " + std::to_string(region.size()) + " numbers");
+  }
+  if (region[2] == 0 || region[3] == 0) {
+    config.fail(key, "has no pixels; its third number is its width, its fourth its height");
+  }
+  if (region[0] + region[2] > render.width || region[1] + region[3] > render.height) {
+    config.fail(key,
+                fmt::format("reaches to column {} and row {} of an image of {} x {} pixels (image.width, "
+                            "image.height)",
+                            region[0] + region[2], region[1] + region[3], render.width, render.height));
+  }
+  const auto pixels = [&](std::size_t i) { return static_cast<std::uint32_t>(region[i]); };
+  render.window = {render.width, render.height, pixels(0), pixels(1)};
+  render.width = pixels(2);
+  render.height = pixels(3);
 }
 
 scenes::ViewOptions read_view(const sim::Config& config) {
@@ -270,7 +345,8 @@ FrameConfig read_frame(sim::Config& config) {
     const std::filesystem::path file = frame.open.base_directory / frame.scene;
     if (std::error_code error; !std::filesystem::exists(file, error)) {
       config.fail("scene.source",
-                  "there is no file " + sim::shown(file.string()) +
+                  (frame.scene.ends_with('/') ? "there is no folder " : "there is no file ") +
+                      sim::shown(file.string()) +
                       "; one that a configuration names is looked for beside it, one given with "
                       "--set or --axis in the current directory");
     }
@@ -278,6 +354,7 @@ FrameConfig read_frame(sim::Config& config) {
   frame.open.file.scene = config.text("scene.scene");
   frame.open.file.camera = config.text("scene.camera");
   frame.open.file.view = read_view(config);
+  frame.open.file.sky = read_sky(config);
   frame.open.file.animation = config.text("scene.animation");
   frame.open.file.default_light = config.choice_as<scenes::DefaultLight>("scene.default_light");
   frame.open.file.strict = config.boolean("scene.strict");
@@ -288,6 +365,7 @@ FrameConfig read_frame(sim::Config& config) {
   config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.width = count(config, "image.width");
   frame.render.height = count(config, "image.height");
+  read_region(config, frame.render);
   frame.render.max_depth = count(config, "image.max_depth");
   frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
   const bool path = frame.render.integrator == processors::program::Integrator::path;

@@ -42,9 +42,13 @@ struct FrameConfig {
   sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
 };
 
-/// The options with the image made so small that its longer side has at most `side` pixels.
+/// The options with the frame made so small that its longer side has at most `side` pixels; a window shows
+/// about the same part of the smaller image.
 [[nodiscard]] processors::program::RenderOptions made_small(processors::program::RenderOptions options,
                                                             double side);
+
+/// "24 x 16", or of a window "24 x 16 at (8, 4) of 512 x 512".
+[[nodiscard]] std::string size_text(const processors::program::RenderOptions& options);
 
 void declare_frame_keys(sim::Schema& schema);
 

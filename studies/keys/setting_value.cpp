@@ -135,6 +135,17 @@ std::string plain_setting(const std::string& toml) {
   return text.empty() ? "\"\"" : text;
 }
 
+std::string pixels_of(const std::map<std::string, std::string>& settings) {
+  const auto width = settings.find("image.width");
+  const auto height = settings.find("image.height");
+  if (width == settings.end() || height == settings.end()) {
+    return {};
+  }
+  const auto region = settings.find("image.region");
+  const bool all = region == settings.end() || region->second == "[]";
+  return (all ? "" : region->second + " of ") + width->second + " x " + height->second + " pixels";
+}
+
 Json config_json(const std::string& file, const std::vector<sim::EffectiveValue>& values) {
   Json keys = Json::object();
   for (const sim::EffectiveValue& value : values) {

@@ -65,10 +65,10 @@ std::string head_of(const sim::Config& config, const PaperConfig& paper) {
   return fmt::format(
       "Space subdivision as the paper of 1992 studied it\n"
       "trees    at most {} in a leaf, {}\n"
-      "images   {} x {}\n"
+      "images   {}\n"
       "machine  {} at {}, operations as \"{}\"\n",
       tables::counted(octree.max_objects, "primitive"), tables::counted(octree.max_level, "level"),
-      paper.frame.render.width, paper.frame.render.height, tables::counted(paper.machine.all_nodes(), "node"),
+      keys::size_text(paper.frame.render), tables::counted(paper.machine.all_nodes(), "node"),
       sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
 }
 

@@ -32,14 +32,10 @@ std::uint64_t image_hash(const processors::program::Image& image) {
 // row grows by doubling and the coarse sample may miss what is expensive.
 void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure) {
-  processors::program::RenderOptions sample = config.render;
-  const std::uint32_t longer = std::max(sample.width, sample.height);
-  if (longer <= sample_side && sample.samples <= sample_rays) {
+  processors::program::RenderOptions sample = keys::made_small(config.render, sample_side);
+  if (sample.width == config.render.width && sample.height == config.render.height &&
+      sample.samples <= sample_rays) {
     return;
-  }
-  if (longer > sample_side) {
-    sample.width = std::max(1U, sample.width * sample_side / longer);
-    sample.height = std::max(1U, sample.height * sample_side / longer);
   }
   sample.samples = std::min(sample.samples, sample_rays);
   sample.record = true;

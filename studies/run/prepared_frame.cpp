@@ -84,7 +84,8 @@ void PreparedFrame::prepare_planned(scenes::Scene scene, scenes::FileUse file) {
   require_textures(config_, scene,
                    is_left_out(run_.plan, PlanItem::textures) ? facts_->texels_needed : facts_->texels);
   sim::KeyError::reported_under(
-      "scene.source", [&] { drop_parts(run_.plan, facts_->needs, host::decode_image, scene); },
+      "scene.source",
+      [&] { drop_parts(run_.plan, facts_->needs, host::decode_image, config_.open.file.strict, scene); },
       sim::shown(config_.scene) + ": ");
   own_scene_ = std::make_unique<const scenes::Scene>(std::move(scene));
   with_scene_keys([&] { prepare(*own_scene_); });

@@ -30,8 +30,8 @@ tables::StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
   output.tables = {scaling_table(points), stage_table(stages), cell_table(cells),
                    tables::claim_table(claims)};
   output.report =
-      fmt::format("Parallel schemes on {}, {} x {}, {} rays\n\n", schemes.frame.scene, log.width, log.height,
-                  run.totals.all_rays()) +
+      fmt::format("Parallel schemes on {}, {}, {} rays\n\n", schemes.frame.scene,
+                  keys::size_text(schemes.frame.render), run.totals.all_rays()) +
       tables::side_by_side(output.tables[0], "nodes", "machine", "speed_up", "Speed-up over one node") +
       "\n" + tables::side_by_side(output.tables[0], "nodes", "machine", "efficiency", "Efficiency") + "\n" +
       tables::text_of(output.tables[1]) + "\n" + tables::text_of(output.tables[2]) + "\n" +

@@ -207,6 +207,48 @@ TEST(Command, AnExportedSceneRendersLikeItsSource) {
   EXPECT_EQ(marti("scene list").status, 0);
 }
 
+// Whatever is wrong with the image: the library that decodes it writes no line of its own.
+TEST(Command, ABrokenTextureHasOneMessage) {
+  const TemporaryDirectory directory;
+  const fs::path folder = directory.path();
+  ASSERT_EQ(marti("run " + small_run + " -o " + quoted(folder / "out")).status, 0);
+  const std::string whole = read(folder / "out" / "image.png");
+  constexpr std::size_t head = 33;  // the signature and the first chunk
+  ASSERT_GT(whole.size(), 4 * head);
+  write(folder / "a.mtl", "newmtl m\nmap_Kd a.png\n");
+  write(folder / "a.obj",
+        "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  const auto outcome_with = [&](const std::string& image, const std::string& options) {
+    write(folder / "a.png", image);
+    return marti("run " + small_run + " --set scene.source=" + quoted(folder / "a.obj") + options);
+  };
+  std::string damaged_head = whole;
+  damaged_head[head - 1] = static_cast<char>(damaged_head[head - 1] ^ 1);
+  std::string damaged_data = whole;
+  damaged_data[whole.size() / 2] = static_cast<char>(damaged_data[whole.size() / 2] ^ 1);
+  for (const std::string& image :
+       {whole.substr(0, head - 10), whole.substr(0, whole.size() / 2), damaged_head, damaged_data}) {
+    const Outcome refused = outcome_with(image, " --set scene.strict=true");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(std::count(refused.output.begin(), refused.output.end(), '\n'), 1) << refused.output;
+    EXPECT_TRUE(says(refused, "a.png"));
+    const Outcome replaced = outcome_with(image, "");
+    EXPECT_EQ(replaced.status, 0);
+    EXPECT_TRUE(says(replaced, "Replaced: 1 textures that cannot be decoded, by "));
+    EXPECT_EQ(replaced.output.find("libpng"), std::string::npos) << replaced.output;
+  }
+  // The smallest image of another format that glTF files may have, WebP.
+  const std::string webp("RIFF\x1a\0\0\0WEBPVP8L\x0d\0\0\0\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07\0",
+                         34);
+  EXPECT_EQ(outcome_with(webp, " --set scene.strict=true").status, 0);
+  // It also warns of what does no harm: here a comment whose checksum is wrong.
+  const std::string comment("\0\0\0\3tEXta\0bXXXX", 15);
+  const Outcome warned =
+      outcome_with(whole.substr(0, head) + comment + whole.substr(head), " --set scene.strict=true");
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_EQ(warned.output.find("libpng"), std::string::npos) << warned.output;
+}
+
 TEST(Command, FramesOfAnAnimationDiffer) {
   const std::string options =
       " --set image.width=40 --set image.height=30 --set frames.count=1 --set structure.max_level=6";

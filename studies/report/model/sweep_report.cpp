@@ -183,9 +183,8 @@ std::string about_sweep(const ReportPoints& sweep) {
   if (const auto scene = shared.find("scene.source"); scene != shared.end()) {
     text += keys::plain_setting(scene->second);
   }
-  if (shared.contains("image.width") && shared.contains("image.height")) {
-    text += fmt::format("{}{} x {} pixels", text.empty() ? "" : ", ", shared.at("image.width"),
-                        shared.at("image.height"));
+  if (const std::string pixels = keys::pixels_of(shared); !pixels.empty()) {
+    text += (text.empty() ? "" : ", ") + pixels;
   }
   std::string varied;
   for (const ReportAxis& axis : sweep.axes) {

@@ -91,9 +91,7 @@ std::string about_machine(const tables::RunJson& run) {
     add(setting("cache.size"), "caches of ");
   }
   add(setting("interconnect.kind"), "");
-  if (const std::string width = setting("image.width"); !width.empty()) {
-    add(width + " x " + setting("image.height"), "", " pixels");
-  }
+  add(keys::pixels_of(settings), "");
   return text;
 }
 

@@ -202,17 +202,30 @@ processors::program::RenderOptions planned_options(const Plan& plan, const PlanF
   return options;
 }
 
-void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode,
+void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode, bool strict,
                 scenes::Scene& scene) {
   const bool without = is_left_out(plan, PlanItem::textures);
+  std::uint64_t undecoded = 0;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     scenes::Texture& texture = scene.textures[i];
     if (without && !needs.textures[i]) {
       texture.texels = {};
       texture.file.reset();
     } else if (texture.file != nullptr) {
-      scenes::decode_texels(texture, decode);
+      try {
+        scenes::decode_texels(texture, decode);
+      } catch (const sim::UserError&) {
+        if (strict) {
+          throw;
+        }
+        ++undecoded;
+        texture.file.reset();
+      }
     }
+  }
+  if (undecoded > 0) {
+    scene.notes.push_back("Replaced: " + std::to_string(undecoded) + " " +
+                          std::string(scenes::undecoded_textures) + ".");
   }
   if (is_left_out(plan, PlanItem::texture_coordinates)) {
     scene.uvs = {};

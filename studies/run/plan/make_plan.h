@@ -49,8 +49,9 @@ void plan_structure(Plan& plan, const PlanFacts& facts, const accel::Structure& 
 /// The options that render the frame by the plan.
 [[nodiscard]] processors::program::RenderOptions planned_options(const Plan& plan, const PlanFacts& facts);
 
-/// Takes out of the scene what the plan leaves out, and decodes the texels that are needed.
-void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode,
+/// Takes out of the scene what the plan leaves out, and decodes the texels that are needed. Textures that
+/// cannot be decoded become white, with a note, or are refused if `strict`.
+void drop_parts(const Plan& plan, const SceneNeeds& needs, const scenes::ImageDecoder& decode, bool strict,
                 scenes::Scene& scene);
 
 /// Throws InternalError where the frame has used what was left out. `shades`: how often each material was

@@ -51,8 +51,13 @@ class Finder {
   }
 
   void find_materials() {
-    const View view(scene_.camera.image_plane(options_.width, options_.height), options_.width,
-                    options_.height, options_.samples > 1);
+    scenes::ImagePlane plane = processors::program::image_plane(scene_.camera, options_);
+    if (options_.window) {
+      const processors::program::Window& window = *options_.window;
+      plane.corner +=
+          plane.step_x * static_cast<double>(window.left) + plane.step_y * static_cast<double>(window.top);
+    }
+    const View view(plane, options_.width, options_.height, options_.samples > 1);
     std::vector<bool> listed(scene_.materials.size());
     std::vector<bool> seen(scene_.materials.size());
     needs_.primitives = in_view_.size();

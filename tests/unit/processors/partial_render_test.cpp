@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <random>
 #include <utility>
@@ -89,9 +90,53 @@ TEST_P(PartialRender, PartsTogetherAreTheWhole) {
   }
 }
 
+// Every pixel of a window is the image's pixel in that place, in its colour and in its words, and what is
+// counted of windows that cover the image adds up to what is counted of it.
+TEST_P(PartialRender, WindowsTogetherAreTheImage) {
+  const Built built(scenes::make_procedural("teapot:2"), "octree");
+  RenderOptions options = GetParam();
+  options.width = 37;
+  options.height = 29;
+  options.max_depth = 3;
+  options.record = true;
+  const Frame whole = built.render(options);
+  const std::array<std::uint32_t, 4> columns = {0, 1, 20, 37};
+  const std::array<std::uint32_t, 3> rows = {0, 13, 29};
+  RayCounts rays;
+  std::uint64_t hit_hash = 0;
+  for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < rows.size(); ++j) {
+      RenderOptions part = options;
+      part.window = {options.width, options.height, columns.at(i), rows.at(j)};
+      part.width = columns.at(i + 1) - columns.at(i);
+      part.height = rows.at(j + 1) - rows.at(j);
+      const Frame frame = built.render(part);
+      ASSERT_EQ(frame.image.width, part.width);
+      ASSERT_EQ(frame.log->rows.size(), part.height);
+      for (std::uint32_t y = 0; y < part.height; ++y) {
+        for (std::uint32_t x = 0; x < part.width; ++x) {
+          const std::uint32_t column = columns.at(i) + x;
+          const std::uint32_t row = rows.at(j) + y;
+          ASSERT_EQ(frame.image.at(x, y), whole.image.at(column, row)) << column << " " << row;
+          const auto words = frame.log->pixel(x, y);
+          const auto expected = whole.log->pixel(column, row);
+          ASSERT_TRUE(std::equal(words.begin(), words.end(), expected.begin(), expected.end()));
+        }
+      }
+      rays += frame.rays;
+      hit_hash += frame.hit_hash;
+    }
+  }
+  EXPECT_EQ(rays.traced, whole.rays.traced);
+  EXPECT_EQ(rays.hit, whole.rays.hit);
+  EXPECT_EQ(rays.voxels, whole.rays.voxels);
+  EXPECT_EQ(hit_hash, whole.hit_hash);
+}
+
 INSTANTIATE_TEST_SUITE_P(OfAllKinds, PartialRender,
                          testing::Values(RenderOptions{}, RenderOptions{.samples = 3},
                                          RenderOptions{.floats = true}, RenderOptions{.mailboxes = true},
+                                         RenderOptions{.voxel_cut = 2.0},
                                          RenderOptions{.integrator = Integrator::path, .samples = 2}));
 
 // A pixel of many samples may have more words than the recorder's first buffer.

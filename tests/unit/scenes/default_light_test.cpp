@@ -96,6 +96,52 @@ TEST(DefaultLight, IsInEveryPose) {
   EXPECT_EQ(first.lights[1].direction, last.lights[1].direction);
 }
 
+// In every kind of scene and in each pose, in place of its background and beside its lights.
+TEST(Sky, AndSunAreInEveryKindOfSceneAndPose) {
+  const testing::SceneFolder folder;
+  testing::GltfFile moving = testing::GltfFile::square();
+  const int times = moving.add_accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
+  const int moves = moving.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0}, 5126, "VEC3", 3);
+  moving.json["animations"] = {
+      {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+       {"samplers", {{{"input", times}, {"output", moves}}}}}};
+  const auto dark = folder.write("dark.glb", moving.glb());
+  moving.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  moving.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  const auto lit = folder.write("lit.glb", moving.glb());
+  const auto obj = folder.write("a.obj", square(false, false, true));
+  folder.write("a.mtl", "newmtl m\n");
+  const glm::dvec3 sky(0.25, 0.5, 1.0);
+  for (const std::string& spec : {std::string("tetra:2"), dark.string(), lit.string(), obj.string()}) {
+    for (const double time : {0.0, 1.0}) {
+      OpenOptions options;
+      options.file.default_light = DefaultLight::never;
+      options.file.time = spec.ends_with(".glb") ? time : 0.0;
+      const Scene own = open_scene(spec, options, {});
+      options.file.default_light = DefaultLight::automatic;
+      options.file.sky = {sky, glm::dvec3(0.0, 3e-200, 4e-200), glm::dvec3(2.0)};
+      const Scene scene = open_scene(spec, options, {});
+      EXPECT_EQ(scene.background, sky) << spec;
+      EXPECT_EQ(scene.ambient, sky) << spec;
+      ASSERT_EQ(scene.lights.size(), own.lights.size() + 1) << spec;
+      for (std::size_t i = 0; i < own.lights.size(); ++i) {
+        EXPECT_EQ(scene.lights[i].position, own.lights[i].position) << spec;
+      }
+      EXPECT_EQ(scene.lights.back().kind, LightKind::directional);
+      EXPECT_LT(glm::length(scene.lights.back().direction - glm::dvec3(0.0, -0.6, -0.8)), 1e-15);
+      EXPECT_EQ(scene.lights.back().color, glm::dvec3(2.0));
+      EXPECT_FALSE(has_note(scene, "over the camera's shoulder")) << spec;
+      // Without a sun, a sky lights paths alone.
+      for (const bool path : {false, true}) {
+        options.file.sky = {sky, {}, {}};
+        options.file.emitters_light = path;
+        const bool added = own.lights.empty() && !own.lights_are_all && !path;
+        EXPECT_EQ(open_scene(spec, options, {}).lights.size(), own.lights.size() + (added ? 1U : 0U)) << spec;
+      }
+    }
+  }
+}
+
 // In every kind of scene and in each pose. A member of the view that is not given is that of the scene's
 // camera.
 TEST(View, ReplacesTheCameraOfEveryKindOfScene) {

@@ -1,6 +1,7 @@
 // What a functional run reports about its structure; runs of the shipped configurations.
 #include "studies/run/functional_run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,12 +9,18 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "scenes/procedural.h"
 #include "sim/files.h"
 #include "studies/run/run_result.h"
 #include "studies/show/summary.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
 
 namespace marti::studies {
 
@@ -44,6 +51,97 @@ TEST(FunctionalRun, SaysThatATreeWasCut) {
     EXPECT_NE(cut.structure_notes[0].find("division stopped"), std::string::npos);
     EXPECT_LT(cut.frame.log->topology.nodes.size(), whole.frame.log->topology.nodes.size());
     EXPECT_EQ(cut.image_hash, whole.image_hash);
+  }
+}
+
+// Also where the window's rays meet only some of the materials, so that the plan leaves others out.
+TEST(FunctionalRun, APixelOfARegionIsThatOfTheImage) {
+  for (const char* integrator : {"whitted", "path"}) {
+    for (const int samples : {1, 3}) {
+      const auto run_of = [&](const std::string& region) {
+        sim::Config config = sim::Config::from_text(
+            run_schema(),
+            fmt::format("scene.source = \"gears:1\"\nimage.width = 30\nimage.height = 20\n"
+                        "image.integrator = \"{}\"\nimage.samples = {}\nimage.region = {}\n",
+                        integrator, samples, region),
+            "a.toml");
+        return run_functional(read_frame(config));
+      };
+      const FunctionalRun whole = run_of("[]");
+      std::uint64_t rays = 0;
+      for (std::uint32_t left = 0; left < 30; left += 10) {
+        for (std::uint32_t top = 0; top < 20; top += 5) {
+          const FunctionalRun part = run_of(fmt::format("[{}, {}, 10, 5]", left, top));
+          rays += part.totals.all_rays();
+          for (std::uint32_t i = 0; i < 50; ++i) {
+            ASSERT_EQ(part.frame.image.at(i % 10, i / 10), whole.frame.image.at(left + i % 10, top + i / 10));
+          }
+        }
+      }
+      EXPECT_EQ(rays, whole.totals.all_rays());
+      EXPECT_EQ(run_of("[0, 0, 30, 20]").image_hash, whole.image_hash);
+    }
+  }
+}
+
+TEST(FunctionalRun, ARegionOutsideTheImageIsRefusedInOneMessage) {
+  for (const auto& [region, message] : std::vector<std::pair<std::string, std::string>>{
+           {"[0, 0, 10]", "must be [left, top, width, height], not 3 numbers"},
+           {"[0, 0, 0, 1]", "has no pixels"},
+           {"[0, 0, 1, 0]", "has no pixels"},
+           {"[30, 0, 1, 1]", "reaches to column 31 and row 1 of an image of 30 x 20 pixels"},
+           {"[0, 1, 30, 20]", "reaches to column 30 and row 21 of an image of 30 x 20 pixels"},
+           {"[32768, 32768, 32768, 32768]", "reaches to column 65536"},
+           {"[-1, 0, 1, 1]", "must be 0 to 32768"}}) {
+    const std::string found = test::user_error_of([&, text = region] {
+      sim::Config config = sim::Config::from_text(
+          run_schema(), "image.width = 30\nimage.height = 20\nimage.region = " + text + "\n", "a.toml");
+      (void)read_frame(config);
+    });
+    EXPECT_NE(found.find(":3: image.region"), std::string::npos) << found;
+    EXPECT_NE(found.find(message), std::string::npos) << found;
+  }
+}
+
+// Nothing hides the sky from a floor in the open, so the ambient light of the one integrator is what the
+// other's rays find.
+TEST(FunctionalRun, ASkyAndASunLightAFloorAlikeForBothIntegrators) {
+  const test::TemporaryDirectory directory;
+  test::write(
+      directory.path() / "floor.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "-100 -100 0\n100 -100 0\n100 100 0\n-100 100 0\n4 0 1 2 3\n");
+  for (const char* integrator : {"whitted", "path"}) {
+    sim::Config config = sim::Config::from_text(
+        run_schema(),
+        fmt::format("scene.source = \"{}\"\nscene.eye = [0, 0, 1]\nscene.look_at = [0, 9, 1]\n"
+                    "scene.up = [0, 0, 1]\nscene.field_of_view = 90\nscene.sky = [0.25, 0.5, 1]\n"
+                    "scene.sun = [3, 0, 4]\nscene.sun_color = [2, 1, 0]\nimage.width = 9\nimage.height = 9\n"
+                    "image.integrator = \"{}\"\n",
+                    (directory.path() / "floor.ply").string(), integrator),
+        "a.toml");
+    const FunctionalRun run = run_functional(read_frame(config));
+    EXPECT_EQ(run.frame.image.at(4, 0), glm::vec3(0.25F, 0.5F, 1.0F)) << integrator;
+    const glm::vec3 lit = 0.8F * (glm::vec3(0.25F, 0.5F, 1.0F) + 0.8F * glm::vec3(2.0F, 1.0F, 0.0F));
+    EXPECT_LT(glm::distance(run.frame.image.at(4, 8), lit), 1e-6F) << integrator;
+    EXPECT_EQ(run.frame.rays.traced[1], run.frame.rays.hit[0])
+        << integrator << ": a shadow ray to the sun each";
+  }
+}
+
+TEST(FunctionalRun, AWrongSkyOrSunIsRefused) {
+  for (const auto& [line, message] : std::vector<std::pair<std::string, std::string>>{
+           {"scene.sky = [1, 2]", "must be three numbers, [red, green, blue], not 2"},
+           {"scene.sky = [1, -2, 1]", "scene.sky"},
+           {"scene.sun = [0, 0, 0]", "must be a direction"},
+           {"scene.sun = [1]", "must be three coordinates, [x, y, z], not 1"}}) {
+    const std::string found = test::user_error_of([&, text = line] {
+      sim::Config config = sim::Config::from_text(run_schema(), text, "a.toml");
+      (void)read_frame(config);
+    });
+    EXPECT_NE(found.find("a.toml:1: scene.s"), std::string::npos) << found;
+    EXPECT_NE(found.find(message), std::string::npos) << found;
   }
 }
 

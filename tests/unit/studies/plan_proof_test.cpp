@@ -225,9 +225,16 @@ TEST(PlanOfFiles, DecodesWhatIsSeen) {
   EXPECT_GT(run.totals.texels, 0U);
   // The simulated database has room for both.
   EXPECT_EQ(run.frame.log->texture_begin, (std::vector<std::uint64_t>{0, 256, 512}));
-  // Kept, the image is decoded, and found to be broken.
+  // Kept, the image is decoded, and found to be broken: in its place and size it is white.
   frame.keep.keep(PlanItem::textures);
   frame.open.file.size_first = size_of_image;
+  const FunctionalRun white = run_functional(frame);
+  EXPECT_EQ(white.image_hash, run.image_hash);
+  EXPECT_EQ(difference_of(*run.frame.log, *white.frame.log), "");
+  EXPECT_EQ(std::ranges::count(white.notes,
+                               "Replaced: 1 textures that cannot be decoded, by white ones of their size."),
+            1);
+  frame.open.file.strict = true;
   EXPECT_NE(test::user_error_of([&] { static_cast<void>(run_functional(frame)); }).find("cannot be decoded"),
             std::string::npos);
   // With a whole image there, nothing else differs. It is another one: equal images are one texture.
