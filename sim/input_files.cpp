@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/error.h"
+#include "sim/sha256.h"
 #include "sim/shown.h"
 
 namespace marti::sim {
@@ -42,6 +43,21 @@ void note_input(const std::filesystem::path& file) {
     const std::lock_guard guard(inputs().mutex);
     inputs().files.insert_or_assign(*identity, failed ? file : place);
   }
+}
+
+std::string inputs_digest() {
+  std::string text;
+  const std::lock_guard guard(inputs().mutex);
+  for (const auto& [identity, file] : inputs().files) {
+    struct stat status {};
+    const bool there = ::stat(file.c_str(), &status) == 0;
+    text += file.string() + "\n" +
+            (there ? std::to_string(status.st_size) + " " + std::to_string(status.st_mtim.tv_sec) + "." +
+                         std::to_string(status.st_mtim.tv_nsec)
+                   : std::string("gone")) +
+            "\n";
+  }
+  return sha256_text(text);
 }
 
 void refuse_input(const std::filesystem::path& target) {

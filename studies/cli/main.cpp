@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <span>
@@ -23,6 +24,7 @@
 #include "scenes/tessellate.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
+#include "sim/finished_parts.h"
 #include "sim/input_files.h"
 #include "sim/made_directory.h"
 #include "sim/memory_budget.h"
@@ -44,6 +46,7 @@
 #include "studies/frames/frames.h"
 #include "studies/host/host_threads.h"
 #include "studies/host/image_file.h"
+#include "studies/host/program_build.h"
 #include "studies/host/signals_held.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/price_keys.h"
@@ -63,6 +66,7 @@
 #include "studies/stability/stability.h"
 #include "studies/tables/page_file.h"
 #include "studies/tables/result_directory.h"
+#include "studies/tables/text_units.h"
 #include "studies/version.h"
 
 namespace marti::studies::cli {
@@ -223,10 +227,26 @@ struct StudyArguments {
   std::string directory;
 };
 
+// All that decides the parts of a study, but the files that it reads.
+std::string identity_of_study(const std::string& name, const sim::Config& config) {
+  const std::filesystem::path program = "/proc/self/exe";
+  std::string text = std::string(host::build_of_program()) + "\n" + name + "\n";
+  // Any other build, because the parts are kept as this one has them in memory.
+  std::error_code unknown;
+  text += std::to_string(std::filesystem::file_size(program, unknown)) + " " +
+          std::to_string(std::filesystem::last_write_time(program, unknown).time_since_epoch().count());
+  for (std::size_t i = 0; i < config.schema().keys().size(); ++i) {
+    const sim::Key& key = config.schema().keys()[i];
+    text += "\n" + key.name + " = " + sim::print_values(key, config.values_at(i));
+  }
+  return text;
+}
+
 // Runs a study; without an output directory it only prints. A fault of the program that the study finds is
 // thrown as InternalError, once all files are written.
 template <class Study>
-void run_study(const StudyArguments& arguments, const sim::Schema& schema, const Study& study) {
+void run_study(const char* name, const StudyArguments& arguments, const sim::Schema& schema,
+               const Study& study) {
   sim::Config config = arguments.config.empty()
                            ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
                            : keys::read_config(schema, arguments.config, arguments.assignments);
@@ -237,6 +257,16 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
     host::load_image_library();
   }
   sim::WorkMeter meter;
+  std::optional<sim::FinishedParts> finished;
+  if (!arguments.directory.empty()) {
+    finished.emplace(std::filesystem::path(arguments.directory) / tables::unfinished_name,
+                     identity_of_study(name, config));
+    meter.keep_in(&*finished);
+    if (finished->taken_up() != 0) {
+      std::fprintf(stderr, "goes on where it was: %s of an earlier call\n",
+                   tables::counted(finished->taken_up(), "finished part").c_str());
+    }
+  }
   std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const tables::StudyOutput output = sim::with_places(config, [&] { return study(config, &meter); });
   shown.reset();  // before anything is printed
@@ -254,6 +284,7 @@ void run_study(const StudyArguments& arguments, const sim::Schema& schema, const
     for (const std::filesystem::path& file : tables::write_study(output, arguments.directory)) {
       text += "wrote " + file.string() + "\n";
     }
+    finished.reset();
   }
   print(text);
   if (!output.fault.empty()) {
@@ -271,7 +302,7 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
     add_directory(command, "-o,--output", arguments.directory, "directory for tables, charts and report")
         ->required(needs_file);
     add_assignments(command, arguments.assignments);
-    command->callback([&arguments, schema, run] { run_study(arguments, schema(), run); });
+    command->callback([&arguments, schema, run, name] { run_study(name, arguments, schema(), run); });
   };
   add("operations", "Counts the operations of every walk, a step and a ray", false, run::run_schema,
       operations::run_operations);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
 #include "sim/error.h"
+#include "sim/finished_parts.h"
 #include "studies/estimate/regression_estimate.h"
 #include "studies/host/cpu_time.h"
 #include "studies/run/functional_run.h"
@@ -49,17 +51,34 @@ double Setting::error() const {
 }
 
 void measure(std::vector<Setting>& settings, std::uint32_t repeats, sim::WorkMeter* meter) {
-  sim::begin_part(meter, "measuring errors and run times", "runs", settings.size() * repeats);
+  const auto is_reference = [&](const Setting& setting) {
+    return setting.drawn && &setting == &settings[setting.exact];
+  };
+  const auto references = static_cast<std::size_t>(std::ranges::count_if(settings, is_reference));
+  sim::plan_parts(meter, "runs", (settings.size() - references) * repeats + references);
   for (std::uint32_t repeat = 0; repeat < repeats; ++repeat) {
-    for (Setting& setting : settings) {
-      sim::count_step(meter);
-      const bool reference = setting.drawn && &setting == &settings[setting.exact];
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      Setting& setting = settings[i];
+      const bool reference = is_reference(setting);
       if (reference && repeat > 0) {
         continue;
       }
-      const double before = host::process_cpu_seconds();
-      const Answer answer = setting.run(repeat);
-      setting.seconds.push_back(host::process_cpu_seconds() - before);
+      sim::begin_part(meter, setting.way + " " + setting.name);
+      Answer answer;
+      double seconds = 0.0;
+      const auto run = [&] {
+        const double before = host::process_cpu_seconds();
+        answer = setting.run(repeat);
+        seconds = host::process_cpu_seconds() - before;
+        if (reference) {
+          // Two references with equal errors that know nothing of each other.
+          setting.noise = error_of(setting.run(1), answer) / std::sqrt(2.0);
+        }
+      };
+      sim::once(meter, "runs", std::to_string(i) + " " + std::to_string(repeat), run, answer.ps,
+                answer.image.width, answer.image.height, answer.image.pixels, answer.note, seconds,
+                setting.noise);
+      setting.seconds.push_back(seconds);
       if (repeat == 0) {
         setting.first = answer;
       } else {
@@ -68,10 +87,6 @@ void measure(std::vector<Setting>& settings, std::uint32_t repeats, sim::WorkMet
       }
       const double error = error_of(answer, settings[setting.exact].first);
       setting.squares += error * error;
-      if (reference) {
-        // Two references with equal errors that know nothing of each other.
-        setting.noise = error_of(setting.run(1), setting.first) / std::sqrt(2.0);
-      }
     }
   }
 }

@@ -10,6 +10,7 @@
 
 #include "processors/program/render.h"
 #include "sim/error.h"
+#include "sim/finished_parts.h"
 #include "sim/units.h"
 #include "studies/frames/frame_sequence.h"
 #include "studies/frames/frame_tables.h"
@@ -50,7 +51,8 @@ class FramesStudy {
   }
 
   void run() {
-    sim::begin_part(config_.frame.meter, "building, tracing and timing", "frames", sequence_.size());
+    sim::plan_parts(config_.frame.meter, "frames", sequence_.size());
+    sim::begin_part(config_.frame.meter, "building, tracing and timing");
     sequence_.visit([this](const PosedFrame& pose) { add(pose); });
   }
 
@@ -58,8 +60,22 @@ class FramesStudy {
   [[nodiscard]] std::vector<tables::StudyImage> take_images() { return std::move(images_); }
 
  private:
+  // A frame that is finished still gets its tree, from which that of the next one is made.
   void add(const PosedFrame& pose) {
     FrameTree tree = make_frame_tree(before_ ? &*before_ : nullptr, pose.scene, options_);
+    FrameOutcome& outcome = outcomes_.emplace_back();
+    processors::program::Image image;
+    sim::once(
+        config_.frame.meter, "frames", std::to_string(pose.number),
+        [&] { image = traced_and_timed(pose, tree, outcome); }, outcome, image.width, image.height,
+        image.pixels, ways_.built());
+    images_.push_back({fmt::format("frame-{:04}", pose.number), std::move(image)});
+    tree.update.reset();
+    before_ = std::move(tree);
+  }
+
+  processors::program::Image traced_and_timed(const PosedFrame& pose, const FrameTree& tree,
+                                              FrameOutcome& outcome) {
     run::refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
     processors::program::RenderOptions options = config_.frame.render;
     options.record = true;
@@ -69,7 +85,6 @@ class FramesStudy {
     if (config_.verify) {
       verify(config_, pose, tree, frame);
     }
-    FrameOutcome& outcome = outcomes_.emplace_back();
     outcome.number = pose.number;
     outcome.seconds = pose.seconds;
     outcome.change = change_of(tree);
@@ -78,10 +93,7 @@ class FramesStudy {
     outcome.build_seconds = tree.build_seconds;
     outcome.update_seconds = tree.update_seconds;
     outcome.ways = ways_.time(*frame.log, tree.update ? &*tree.update : nullptr);
-    images_.push_back({fmt::format("frame-{:04}", pose.number), std::move(frame.image)});
-    tree.update.reset();
-    before_ = std::move(tree);
-    sim::count_step(config_.frame.meter);
+    return std::move(frame.image);
   }
 
   const FramesConfig& config_;

@@ -6,6 +6,7 @@
 
 #include "accel/structure.h"
 #include "scenes/open.h"
+#include "sim/finished_parts.h"
 #include "studies/host/image_file.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_keys.h"
@@ -62,8 +63,10 @@ OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
   study.max_depth = frame.render.max_depth;
   study.max_objects = frame.structure_options.octree.max_objects;
   study.max_level = frame.structure_options.octree.max_level;
-  sim::begin_part(meter, "counting operations", "walks", plans.size());
+  sim::plan_parts(meter, "walks", 2 * plans.size() - 1);
+  sim::plan_parts(meter, "lengths", 1);
   for (const CountedWalk& plan : plans) {
+    sim::begin_part(meter, std::string("counting operations of ") + plan.name);
     accel::StructureOptions options = frame.structure_options;
     options.bsp.walk = plan.walk;
     options.grid_match = plan.match;
@@ -86,11 +89,17 @@ OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
       row.side = std::max(render.width, render.height);
       row.nodes = structure->topology().nodes.size();
       row.entries = structure->topology().entries.size();
-      row.measured = processors::cost::measure_operation_mixes(scene, *triangles, *structure, render);
+      sim::once(
+          meter, "walks", row.name + (mailboxes ? " with mailboxes" : ""),
+          [&] {
+            row.measured = processors::cost::measure_operation_mixes(scene, *triangles, *structure, render);
+          },
+          row.measured);
     }
-    sim::count_step(meter);
   }
-  study.lengths = measure_unit_lengths(deepest, unit_length_rays);
+  sim::once(
+      meter, "lengths", "", [&] { study.lengths = measure_unit_lengths(deepest, unit_length_rays); },
+      study.lengths);
   return study;
 }
 

@@ -7,11 +7,13 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "accel/structure.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
+#include "sim/finished_parts.h"
 #include "studies/host/image_file.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/open_frame.h"
@@ -70,13 +72,22 @@ std::vector<RunOutcomes> time_initial_levels(const PaperConfig& config, std::spa
       outcomes[run].levels.emplace_back().initial = std::move(initial);
     }
   }
-  sim::begin_part(config.frame.meter, "timing initial trees", "machines", machines.size());
+  sim::WorkMeter* const meter = config.frame.meter;
+  sim::plan_parts(meter, "machines", machines.size());
+  sim::plan_parts(meter, "trees on this computer", config.host_repetitions != 0 ? machines.size() : 0);
+  sim::begin_part(meter, "timing initial trees");
   tbb::parallel_for(std::size_t{0}, machines.size(), [&](std::size_t i) {
     const auto [run, level] = machines[i];
     LevelOutcome& outcome = outcomes[run].levels[level];
-    outcome = outcome_of(processors::replay::replay(*runs[run].log, machine_for(config, outcome.initial)),
+    sim::once(
+        meter, "machines", name_of(outcomes[run].run) + " " + std::to_string(outcome.initial.level),
+        [&] {
+          outcome =
+              outcome_of(processors::replay::replay(*runs[run].log, machine_for(config, outcome.initial)),
                          outcome.initial);
-    sim::count_step(config.frame.meter);
+        },
+        outcome.build, outcome.render, outcome.time, outcome.splits, outcome.nodes, outcome.partial,
+        outcome.bytes);
   });
   return outcomes;
 }
@@ -124,9 +135,15 @@ std::vector<HostOutcome> measure_host(const PaperConfig& config, const TracedRun
     outcome.initial = std::move(initial);
     outcome.build_seconds = std::numeric_limits<double>::infinity();
     outcome.render_seconds = std::numeric_limits<double>::infinity();
-    for (std::uint32_t repetition = 0; repetition < config.host_repetitions; ++repetition) {
-      measure_once(scene, triangles, frame, outcome);
-    }
+    sim::once(
+        config.frame.meter, "trees on this computer",
+        name_of(run.run) + " " + std::to_string(outcome.initial.level),
+        [&] {
+          for (std::uint32_t repetition = 0; repetition < config.host_repetitions; ++repetition) {
+            measure_once(scene, triangles, frame, outcome);
+          }
+        },
+        outcome.build_seconds, outcome.render_seconds, outcome.nodes, outcome.partial, outcome.bytes);
   }
   return outcomes;
 }

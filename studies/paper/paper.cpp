@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/error.h"
+#include "sim/finished_parts.h"
 #include "sim/mapped.h"
 #include "sim/units.h"
 #include "studies/host/image_file.h"
@@ -109,11 +110,20 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
 
   // One after the other, so that the host's seconds mean something.
   std::vector<SceneTrees> trees;
-  sim::begin_part(meter, "building trees", "scenes", paper.scenes.size());
+  const std::size_t levels = paper.runs.size() * (paper.levels.size() + paper.rules.size() + 1);  // about
+  sim::plan_parts(meter, "scenes", paper.scenes.size());
+  sim::plan_parts(meter, "frames", paper.runs.size());
+  sim::plan_parts(meter, "machines", levels);
+  sim::plan_parts(meter, "trees on this computer", paper.host_repetitions != 0 ? levels : 0);
   for (const std::string& name : paper.scenes) {
-    trees.push_back(
-        measure_trees(name, open(config, paper, name, "paper.scenes"), paper.frame.structure_options));
-    sim::count_step(meter);
+    const scenes::Scene scene = open(config, paper, name, "paper.scenes");
+    sim::begin_part(meter, "building the trees of " + name);
+    SceneTrees& built = trees.emplace_back();
+    sim::once(
+        meter, "scenes", name, [&] { built = measure_trees(name, scene, paper.frame.structure_options); },
+        built.scene, built.hash, built.polygons, built.primitives, built.octree.levels,
+        built.octree.empty_leaves, built.octree.build_seconds, built.bsp.levels, built.bsp.empty_leaves,
+        built.bsp.build_seconds);
   }
   tables::Table scenes = scene_table(config, paper, trees);
 
@@ -122,6 +132,7 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   PaperConfig beside = paper;
   for (const PaperRun& run : paper.runs) {
     runs.push_back(trace_run(beside, run));
+    sim::finish_part(meter, "frames");
     beside.frame.memory.take(runs.back().totals.bytes, "the work logs of all runs take",
                              "name fewer runs in paper.run_scenes, or lower image.width");
     keys::give_memory(beside.frame.memory, beside.frame.structure_options);
@@ -151,10 +162,9 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(tables::provenance_table(config.effective_values()));
   output.host_tables = {host_tree_table(trees), tables::host_table()};
-  sim::begin_part(meter, "measuring trees on this computer", "runs", runs.size());
+  sim::begin_part(meter, "measuring trees on this computer");
   for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
     output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
-    sim::count_step(meter);
   }
   for (const tables::Table& table : output.host_tables) {
     output.host_report += (output.host_report.empty() ? "" : "\n") + tables::text_of(table);

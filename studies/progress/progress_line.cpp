@@ -111,6 +111,11 @@ std::string meter_text(const sim::WorkMeter::State& state, double seconds, const
     return "";
   }
   const std::string passed = tables::duration_text(seconds);
+  if (state.whole_of != 0) {
+    return progress_bar(state.whole_done, state.whole_of, usual_bar) +
+           fmt::format("{} of {} {}, {}{}: {}", state.whole_done, state.whole_of, state.whole_unit, passed,
+                       left_text(state.left), state.part);
+  }
   if (state.of == 0) {
     return fmt::format("{}, {}", state.part, passed);
   }

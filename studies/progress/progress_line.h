@@ -65,12 +65,7 @@ class ShownMeter {
   std::optional<host::AtSignal> at_signal_;  // takes the line away
 };
 
-/// How long something takes.
-struct Duration {
-  double seconds = 0.0;  ///< as people wait
-  double processor =
-      0.0;  ///< seconds of processor time: less beside other programs, more with several threads
-};
+using sim::Duration;
 
 /// ", 2 min 05 s left (4 min 10 s of processor time)"; empty below a second: an estimate that comes to its
 /// end says nothing.
@@ -90,7 +85,8 @@ class Pace {
 
 /// "[######......] tracing: 120 of 240 rows, 5.0 s, 15 s left (30 s of processor time)": what is done, how
 /// long the whole work has taken, and what is left of this part. Without steps that are counted there is no
-/// bar; empty before anything was begun.
+/// bar; empty before anything was begun. Of work that is planned as a whole, "[######......] 12 of 40
+/// parts, 5.0 s, 15 s left (30 s of processor time): tracing": all parts, and what is left of them.
 [[nodiscard]] std::string meter_text(const sim::WorkMeter::State& state, double seconds,
                                      const Duration& left = {});
 

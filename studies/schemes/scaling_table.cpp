@@ -5,8 +5,10 @@
 #include <string>
 
 #include "processors/cost/accounting.h"
+#include "sim/finished_parts.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/schemes/tree_tables.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::schemes {
 
@@ -39,12 +41,21 @@ ScalingPoint point_of(const NamedMachine& machine, const processors::replay::Mac
 
 }  // namespace
 
+std::size_t machines_to_time(const SchemesConfig& config) {
+  std::size_t machines = config.machines.size();
+  for (const std::filesystem::path& file : config.machines) {
+    const std::uint32_t fewest = fewest_nodes(read_machine_file(file, config.frame).config);
+    machines += static_cast<std::size_t>(
+        std::ranges::count_if(config.nodes, [&](std::uint32_t nodes) { return nodes >= fewest; }));
+  }
+  return machines;
+}
+
 std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const processors::program::WorkLog& log,
                                         std::span<const StagePoint> stages) {
   const auto quickest = std::ranges::min_element(stages, {}, &StagePoint::end);
   std::vector<ScalingPoint> points;
-  sim::begin_part(config.frame.meter, "timing machines", "machines",
-                  config.machines.size() * (1 + config.nodes.size()));
+  sim::WorkMeter* const meter = config.frame.meter;
   for (const std::filesystem::path& file : config.machines) {
     const NamedMachine own = read_machine_file(file, config.frame);
     processors::machine::PipelineConfig shares = own.config.pipeline;
@@ -54,14 +65,26 @@ std::vector<ScalingPoint> time_machines(const SchemesConfig& config, const proce
       shares.shade = quickest->nodes[2];
     }
     const processors::machine::MachineConfig alone = processors::machine::one_node_of(own.config);
-    const figures::Counts one_node = figures::counts_of(alone, processors::replay::replay(log, alone));
-    sim::count_step(config.frame.meter);
+    figures::Counts one_node;
+    sim::begin_part(meter, "timing " + own.name + " on one node");
+    sim::once(
+        meter, "machines", own.name + " on one node",
+        [&] { one_node = figures::counts_of(alone, processors::replay::replay(log, alone)); }, one_node);
     for (const std::uint32_t nodes : config.nodes) {
-      if (nodes >= fewest_nodes(own.config)) {
-        const NamedMachine machine = read_machine_file(file, config.frame, nodes, shares);
-        points.push_back(point_of(machine, processors::replay::replay(log, machine.config), one_node));
+      if (nodes < fewest_nodes(own.config)) {
+        continue;
       }
-      sim::count_step(config.frame.meter);
+      const NamedMachine machine = read_machine_file(file, config.frame, nodes, shares);
+      const std::string name = machine.name + " on " + tables::counted(nodes, "node");
+      sim::begin_part(meter, "timing " + name);
+      ScalingPoint& point = points.emplace_back();
+      sim::once(
+          meter, "machines", name,
+          [&] { point = point_of(machine, processors::replay::replay(log, machine.config), one_node); },
+          point.scheme, point.nodes, point.end, point.one_node_end, point.speed_up, point.efficiency,
+          point.limit, point.interconnect, point.hit_ratio, point.idle, point.waiting, point.messages,
+          point.message_bytes);
+      point.machine = machine.name;
     }
   }
   return points;

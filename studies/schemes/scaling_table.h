@@ -35,6 +35,9 @@ struct ScalingPoint {
   std::optional<figures::Count> message_bytes;
 };
 
+/// How many machines time_machines() times: of each file also that with one node.
+[[nodiscard]] std::size_t machines_to_time(const SchemesConfig& config);
+
 /// Times every machine with every number of nodes from the log; points in the order of the machines, then of
 /// the nodes. A number that a machine cannot have (a pipeline needs a node for each stage) has no point. A
 /// pipeline's nodes are shared out as in the quickest of `stages`, if there is any.

@@ -20,7 +20,9 @@ tables::StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
   schemes.frame.meter = meter;
   const run::FunctionalRun run = run::run_functional(schemes.frame);
   const processors::program::WorkLog& log = *run.frame.log;
-  sim::begin_part(meter, "balancing the stages of the pipeline");
+  sim::plan_parts(meter, "stages", schemes.stage_machine.empty() ? 0 : 1);
+  sim::plan_parts(meter, "machines", machines_to_time(schemes));
+  sim::plan_parts(meter, "trees", schemes.cell_levels.size() + schemes.structures.size());
   const std::vector<StagePoint> stages = time_stages(schemes, log);
   const std::vector<ScalingPoint> points = time_machines(schemes, log, stages);
   const std::vector<CellPoint> cells = time_cells(schemes);

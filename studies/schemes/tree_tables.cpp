@@ -1,11 +1,14 @@
 #include "studies/schemes/tree_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "processors/replay/replay.h"
+#include "sim/finished_parts.h"
 #include "sim/statistics.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/figures/flow_figures.h"
@@ -13,14 +16,22 @@
 
 namespace marti::studies::schemes {
 
-TreePoint time_tree(const keys::FrameConfig& frame, const std::filesystem::path& machine_file) {
+TreePoint time_tree(const keys::FrameConfig& frame, const std::filesystem::path& machine_file,
+                    const std::string& name) {
   const NamedMachine machine = read_machine_file(machine_file, frame);
-  const run::FunctionalRun run = run::run_functional(frame);
-  const processors::program::WorkLog& log = *run.frame.log;
-  const processors::replay::MachineResult result = processors::replay::replay(log, machine.config);
-  return {log.topology.nodes.size(), log.topology.entries.size(),
-          result.database_bytes,     result.steps(),
-          result.references(),       result.end};
+  TreePoint point;
+  sim::once(
+      frame.meter, "trees", name,
+      [&] {
+        const run::FunctionalRun run = run::run_functional(frame);
+        const processors::program::WorkLog& log = *run.frame.log;
+        const processors::replay::MachineResult result = processors::replay::replay(log, machine.config);
+        point = {log.topology.nodes.size(), log.topology.entries.size(),
+                 result.database_bytes,     result.steps(),
+                 result.references(),       result.end};
+      },
+      point);
+  return point;
 }
 
 tables::Column figure_column(std::string_view figure) {
@@ -61,7 +72,7 @@ std::vector<CellPoint> time_cells(const SchemesConfig& config) {
     keys::FrameConfig frame = config.frame;
     frame.structure_options.octree.max_level = level;
     frame.structure_options.octree.max_objects = config.cell_objects;
-    points.push_back({level, time_tree(frame, config.cell_machine)});
+    points.push_back({level, time_tree(frame, config.cell_machine, "level " + std::to_string(level))});
   }
   return points;
 }
@@ -81,7 +92,7 @@ std::vector<StructurePoint> time_structures(const SchemesConfig& config) {
     keys::FrameConfig frame = config.frame;
     frame.structure = structure.kind;
     frame.structure_options.bvh.node = structure.node;
-    points.push_back({structure.name, time_tree(frame, config.cell_machine)});
+    points.push_back({structure.name, time_tree(frame, config.cell_machine, structure.name)});
   }
   return points;
 }
@@ -107,14 +118,20 @@ StagePoint time_shares(const SchemesConfig& config, const processors::program::W
   shares.shade = nodes[2];
   const NamedMachine machine =
       read_machine_file(config.stage_machine, config.frame, config.stage_nodes, shares);
-  const processors::replay::MachineResult result = processors::replay::replay(log, machine.config);
   StagePoint point;
-  point.nodes = nodes;
-  point.end = result.end;
-  const figures::FlowFigures figures = figures::flow_figures(machine.config, result);
-  for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
-    point.busy[stage] = figures.stages[stage].busy;
-  }
+  sim::begin_part(config.frame.meter, "balancing the stages of the pipeline");
+  sim::once(
+      config.frame.meter, "stages", fmt::format("{}", fmt::join(nodes, " ")),
+      [&] {
+        const processors::replay::MachineResult result = processors::replay::replay(log, machine.config);
+        point.nodes = nodes;
+        point.end = result.end;
+        const figures::FlowFigures figures = figures::flow_figures(machine.config, result);
+        for (std::size_t stage = 0; stage < pipeline_stages; ++stage) {
+          point.busy[stage] = figures.stages[stage].busy;
+        }
+      },
+      point);
   return point;
 }
 

@@ -26,8 +26,9 @@ struct TreePoint {
   sim::Ticks end = 0;
 };
 
-/// Traces the frame and times the machine of the file on it.
-[[nodiscard]] TreePoint time_tree(const keys::FrameConfig& frame, const std::filesystem::path& machine_file);
+/// Traces the frame and times the machine of the file on it, once (sim/finished_parts.h) for each `name`.
+[[nodiscard]] TreePoint time_tree(const keys::FrameConfig& frame, const std::filesystem::path& machine_file,
+                                  const std::string& name);
 
 /// The column of a figure of the catalogue (studies/figures), with its name, unit and description.
 [[nodiscard]] tables::Column figure_column(std::string_view figure);

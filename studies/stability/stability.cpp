@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "processors/program/render.h"
+#include "sim/finished_parts.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
@@ -144,16 +145,19 @@ tables::StudyOutput run_stability(sim::Config& config, std::span<const Stability
   tables::Table table = empty_table();
   std::vector<std::string> failed;
   std::size_t passed = 0;
-  sim::begin_part(meter, "trying extreme cases", "cases", cases.size());
+  sim::plan_parts(meter, "cases", cases.size());
   for (const StabilityCase& one : cases) {
-    const CaseOutcome outcome = run_case(one, subject);
+    sim::begin_part(meter, "trying " + one.id);
+    CaseOutcome outcome;
+    sim::once(
+        meter, "cases", one.id, [&] { outcome = run_case(one, subject); }, outcome.figure, outcome.objection,
+        outcome.tried);
     table.add_row({one.group == CaseGroup::scene ? "scene" : "machine", one.id, one.risk, one.oracle,
                    outcome.figure, outcome.objection, outcome.verdict()});
     passed += outcome.tried && outcome.passed() ? 1U : 0U;
     if (!outcome.passed()) {
       failed.push_back(one.id);
     }
-    sim::count_step(meter);
   }
   const tables::Table precision = precision_table(subject);
   output.report =

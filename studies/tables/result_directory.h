@@ -14,6 +14,8 @@ namespace marti::studies::tables {
 inline constexpr const char* run_name = "result.json";
 /// The file of a sweep or study in its directory.
 inline constexpr const char* database_name = "results.sqlite";
+/// The file of the finished parts of a study that is not (sim/finished_parts.h), in its directory.
+inline constexpr const char* unfinished_name = "unfinished.parts";
 /// The file that names the traces of `marti trace` beside it, and the machine that they are of.
 inline constexpr const char* trace_name = "trace.json";
 /// The page of `marti report`, if no other name is asked for.

@@ -73,6 +73,30 @@ TEST(ShownMeter, SaysWhatIsDone) {
             "processor time)");
 }
 
+// What is left takes as long as parts of its kind have taken; those that were found finished took no time.
+TEST(WorkMeter, TellsWhatIsLeftOfAllItsParts) {
+  sim::WorkMeter meter;
+  EXPECT_EQ(meter.state().whole_of, 0U);
+  meter.plan("frames", 2);
+  meter.plan("machines", 40);
+  meter.plan("machines", 4);
+  meter.finish("frames", false);
+  EXPECT_EQ(meter.state().left.seconds, 0.0) << "nothing is known yet";
+  std::this_thread::sleep_for(milliseconds(20));
+  meter.finish("machines", true);
+  const sim::WorkMeter::State state = meter.state();
+  EXPECT_EQ(state.whole_unit, "parts");
+  EXPECT_EQ(state.whole_done, 2U);
+  EXPECT_EQ(state.whole_of, 6U);
+  EXPECT_GT(state.left.seconds, 0.0) << "four parts, each like the machine";
+  meter.begin("timing");
+  EXPECT_EQ(meter_text(meter.state(), 5.0).find("[########................] 2 of 6 parts, 5.0 s"), 0U);
+  for (int more = 0; more < 9; ++more) {
+    meter.finish("machines", true);
+  }
+  EXPECT_EQ(meter.state().whole_of, 12U) << "more than were planned";
+}
+
 // Steps that were done before the part was first seen say nothing about its pace, nor do those of other
 // parts.
 TEST(Pace, IsThatOfTheStepsSeenDone) {
