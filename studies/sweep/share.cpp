@@ -46,8 +46,7 @@ std::vector<Hand> hands_of(const SweepPlan& plan, bool whole_frames) {
   std::map<std::size_t, Hand> hands;
   for (std::size_t i = 0; i < plan.machines.size(); ++i) {
     const SweepMachine& machine = plan.machines[i];
-    const processors::program::RenderOptions& image = plan.frames[machine.frame].config.render;
-    const double rays = static_cast<double>(image.width) * image.height * image.samples;
+    const double rays = plan.frames[machine.frame].rays();
     Hand& hand = hands[whole_frames ? machine.frame : machine.timing];
     if (hand.machines.empty()) {
       hand.rays = whole_frames ? rays : 0.0;  // the frame itself takes about as long as one of its machines

@@ -25,6 +25,11 @@ struct SweepFrame {
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
   /// Hash of the scene as it was planned, where it is a file; the scene must be the same when it is traced.
   std::optional<std::uint64_t> scene_hash{};
+
+  /// Camera rays, by which frames and their machines take about as long as others.
+  [[nodiscard]] double rays() const {
+    return static_cast<double>(config.render.width) * config.render.height * config.render.samples;
+  }
 };
 
 /// One machine on one frame. It is replayed once, however many points ask for it.

@@ -1,22 +1,44 @@
 #include "studies/sweep/work/sweep_results.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "sim/error.h"
+#include "studies/host/cpu_time.h"
 
 namespace marti::studies::sweep {
 
 SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress)
-    : store_(store), progress_(progress), planned_(plan.machines.size()) {
-  frames_.left = static_cast<std::size_t>(std::ranges::count(store.frames_done(), false));
-  machines_.left = static_cast<std::size_t>(std::ranges::count(store.done(), false));
-  progress_.begin(planned_, planned_ - machines_.left, plan.frames.size(), plan.frames.size() - frames_.left);
+    : store_(store), progress_(progress), plan_(plan), last_(host::process_cpu_seconds()) {
+  const std::vector<bool> frames = store.frames_done();
+  const std::vector<bool> machines = store.done();
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+    frames_.left += frames[frame] ? 0.0 : plan.frames[frame].rays();
+  }
+  for (std::size_t machine = 0; machine < machines.size(); ++machine) {
+    machines_.left += machines[machine] ? 0.0 : plan.frames[plan.machines[machine].frame].rays();
+  }
+  saved_ = static_cast<std::size_t>(std::ranges::count(machines, true));
+  progress_.begin(plan.machines.size(), saved_, plan.frames.size(),
+                  static_cast<std::size_t>(std::ranges::count(frames, true)));
+}
+
+double SweepResults::taken() {
+  const double before = last_;
+  last_ = host::process_cpu_seconds();
+  return last_ - before;
+}
+
+std::int64_t SweepResults::nanoseconds_left() const {
+  return machines_.done == 0.0
+             ? 0
+             : static_cast<std::int64_t>(1e9 * (frames_.seconds_left() + machines_.seconds_left()));
 }
 
 void SweepResults::traced(std::size_t frame, const FrameRow& row, std::int64_t nanoseconds) {
   const std::lock_guard lock(mutex_);
   if (store_.add_frame(frame, row, nanoseconds)) {
-    frames_.add(nanoseconds);
+    frames_.add(plan_.frames[frame].rays(), taken());
     progress_.traced(nanoseconds_left());
   }
 }
@@ -24,7 +46,8 @@ void SweepResults::traced(std::size_t frame, const FrameRow& row, std::int64_t n
 void SweepResults::timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) {
   const std::lock_guard lock(mutex_);
   store_.add_result(machine, row, cpu_nanoseconds);
-  machines_.add(cpu_nanoseconds);
+  ++saved_;
+  machines_.add(plan_.frames[plan_.machines[machine].frame].rays(), taken());
   progress_.timed(nanoseconds_left());
 }
 
@@ -35,7 +58,7 @@ void SweepResults::advised(std::size_t machine, const Advice& advice) {
 
 std::size_t SweepResults::saved() {
   const std::lock_guard lock(mutex_);
-  return planned_ - machines_.left;
+  return saved_;
 }
 
 std::size_t SweepResults::close_for_good() {
@@ -46,7 +69,7 @@ std::size_t SweepResults::close_for_good() {
   } catch (const sim::UserError&) {
     // What is committed is safe in the log beside the store, which the next run takes in.
   }
-  return planned_ - machines_.left;
+  return saved_;
 }
 
 }  // namespace marti::studies::sweep

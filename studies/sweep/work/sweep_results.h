@@ -13,6 +13,7 @@ namespace marti::studies::sweep {
 /// Thread-safe. Each result is in the store before the call that brings it returns.
 class SweepResults {
  public:
+  /// All must outlive this object.
   SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress);
 
   void traced(std::size_t frame, const FrameRow& row, std::int64_t nanoseconds);
@@ -26,30 +27,32 @@ class SweepResults {
   std::size_t close_for_good();
 
  private:
-  /// How many of what a plan has are to do, and what those that were done took.
+  /// How much of what a plan has is to do, in camera rays, and what that which was done took. Everything that
+  /// the process does counts, as what comes before the next result: so what is done for many machines is in.
   struct Kind {
-    std::size_t left = 0;
-    std::int64_t done = 0;
-    std::int64_t nanoseconds = 0;
+    double left = 0.0;
+    double done = 0.0;
+    double seconds = 0.0;  ///< of processor time
 
-    void add(std::int64_t taken) {
-      --left;
-      ++done;
-      nanoseconds += taken;
+    void add(double rays, double taken) {
+      left -= rays;
+      done += rays;
+      seconds += taken;
     }
-    /// By the mean of those done; 0 while nothing is known.
-    [[nodiscard]] std::int64_t nanoseconds_left() const {
-      return done == 0 ? 0 : nanoseconds / done * static_cast<std::int64_t>(left);
-    }
+    /// As long a ray as those done.
+    [[nodiscard]] double seconds_left() const { return done == 0.0 ? 0.0 : seconds / done * left; }
   };
-  [[nodiscard]] std::int64_t nanoseconds_left() const {
-    return frames_.nanoseconds_left() + machines_.nanoseconds_left();
-  }
+  /// Processor time since the last result.
+  [[nodiscard]] double taken();
+  /// 0 until a machine was timed.
+  [[nodiscard]] std::int64_t nanoseconds_left() const;
 
   std::mutex mutex_;  // of all below
   SweepStore& store_;
   Progress& progress_;
-  std::size_t planned_;
+  const SweepPlan& plan_;
+  std::size_t saved_ = 0;
+  double last_;  // processor time of the process when the last result came
   Kind frames_;
   Kind machines_;
 };

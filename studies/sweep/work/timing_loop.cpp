@@ -50,11 +50,6 @@ std::string name_of(const SweepMachine& machine) {
   return name;
 }
 
-double rays_of(const SweepFrame& frame) {
-  const processors::program::RenderOptions& image = frame.config.render;
-  return static_cast<double>(image.width) * image.height * image.samples;
-}
-
 class Loop {
  public:
   Loop(const SweepPlan& plan, const WorkDone& done, const sim::MemoryBudget& memory, SweepResults& results)
@@ -113,7 +108,7 @@ class Loop {
       return true;
     }
     const auto bytes = static_cast<double>(memory_of(*frame_->log));
-    const double next = bytes * rays_of(plan_.frames[batch.frame]) / rays_of(plan_.frames[number_]);
+    const double next = bytes * plan_.frames[batch.frame].rays() / plan_.frames[number_].rays();
     return bytes + next <= static_cast<double>(memory_.limit()) / 2.0;
   }
 
