@@ -108,15 +108,15 @@ Formula all_steps() {
   return sum;
 }
 
-// What the time of links and data buses is spent on, each as a share of the whole. The first is the share of
-// the peak that they move.
+// What the time of links and data buses is spent on, each as a share of the whole. Data take whole beats, of
+// which bytes may fill a part only.
 void add_shares(std::vector<FigureEntry>& all) {
   const auto add = [&all](std::string_view name, std::string_view text, Better better, const Formula& part,
                           const Formula& whole) {
     all.push_back({std::string(name), "fraction", std::string(text), Merge::ratio, better, part / whole});
   };
   const Formula links = own("interconnect_busy") + own("interconnect_no_request");
-  add("interconnect_share_data", "share of the links' time in which they move data: of their peak",
+  add("interconnect_share_data", "share of the links' time in which they move data, in whole beats",
       Better::higher, own("interconnect_data"), links);
   add("interconnect_share_address", "share in which a bus sends addresses", Better::lower,
       own("interconnect_busy") - own("interconnect_data") - own("interconnect_held"), links);
@@ -126,7 +126,7 @@ void add_shares(std::vector<FigureEntry>& all) {
   add("interconnect_share_no_request", "share in which nobody asks for them", Better::neither,
       own("interconnect_no_request"), links);
   const Formula network = own("network_busy") + own("network_no_request");
-  add("network_share_data", "share of the links' time in which they move bytes: of their peak",
+  add("network_share_data", "share of the links' time in which they move bytes, in whole beats",
       Better::higher, own("network_data"), network);
   add("network_share_latency", "share in which a network's bus waits for its latency", Better::lower,
       own("network_busy") - own("network_data"), network);

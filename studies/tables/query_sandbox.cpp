@@ -7,13 +7,13 @@
 
 #include <algorithm>
 #include <array>
-#include <new>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "sim/error.h"
+#include "sim/shown.h"
 #include "sim/units.h"
 #include "studies/tables/sqlite_connection.h"
 #include "studies/tables/text_units.h"
@@ -25,25 +25,29 @@ namespace {
 constexpr int steps_at_a_time = 100'000;
 constexpr int most_times = 2'000;  // so many steps
 constexpr std::size_t most_rows = 10'000;
-constexpr int longest_value = 1'000'000;
+constexpr std::size_t most_text = 10'000'000;  // of the rows' texts
+constexpr std::int64_t most_memory = 256'000'000;
+constexpr int longest_value = 100'000;
 constexpr int longest_query_pattern = 200;
 constexpr int deepest_query = 200;
 
-// Functions of SQLite that depend on chance, on the time or on other statements, reach beyond the table, or
-// take memory at will.
-constexpr std::array<std::string_view, 22> refused_functions = {"changes",
+// Functions of SQLite that depend on chance, on the time, on the version of SQLite or on other statements,
+// reach beyond the table, or take memory at will.
+constexpr std::array<std::string_view, 26> refused_functions = {"changes",
                                                                 "current_date",
                                                                 "current_time",
                                                                 "current_timestamp",
                                                                 "date",
                                                                 "datetime",
                                                                 "fts3_tokenizer",
+                                                                "fts5_source_id",
                                                                 "julianday",
                                                                 "last_insert_rowid",
                                                                 "load_extension",
                                                                 "random",
                                                                 "randomblob",
                                                                 "readfile",
+                                                                "rtreecheck",
                                                                 "sqlite_compileoption_get",
                                                                 "sqlite_compileoption_used",
                                                                 "sqlite_log",
@@ -51,7 +55,9 @@ constexpr std::array<std::string_view, 22> refused_functions = {"changes",
                                                                 "sqlite_version",
                                                                 "strftime",
                                                                 "time",
+                                                                "timediff",
                                                                 "total_changes",
+                                                                "unixepoch",
                                                                 "zeroblob"};
 static_assert(std::ranges::is_sorted(refused_functions));
 
@@ -75,9 +81,7 @@ int authorize(void* user, int action, const char* first, const char* second, con
       if (first == watched.table && watched.reads != nullptr && second != nullptr && *second != '\0') {
         watched.reads->insert(second);
       }
-      return first == std::string_view("sqlite_master") || first == std::string_view("sqlite_schema")
-                 ? SQLITE_DENY
-                 : SQLITE_OK;
+      return std::string_view(first).starts_with("sqlite_") ? SQLITE_DENY : SQLITE_OK;
     case SQLITE_FUNCTION:
       return second != nullptr && std::ranges::binary_search(refused_functions, std::string_view(second))
                  ? SQLITE_DENY
@@ -93,10 +97,13 @@ int one_more_time(void* user) {
   return watched.too_long ? 1 : 0;
 }
 
-// Has a connection ask these two while it lives.
+// Has a connection ask these two while it lives, and SQLite take no more than so much more memory. That is a
+// limit of all connections of the process, none of which is used by another thread meanwhile; it also bounds
+// how far SQLite unfolds the parts of a query before it runs.
 class Watching {
  public:
-  Watching(sqlite3* database, Watched& watched) : database_(database) {
+  Watching(sqlite3* database, Watched& watched)
+      : database_(database), memory_limit_(sqlite3_hard_heap_limit64(sqlite3_memory_used() + most_memory)) {
     sqlite3_set_authorizer(database, authorize, &watched);
     sqlite3_progress_handler(database, steps_at_a_time, one_more_time, &watched);
   }
@@ -105,10 +112,12 @@ class Watching {
   ~Watching() {
     sqlite3_progress_handler(database_, 0, nullptr, nullptr);
     sqlite3_set_authorizer(database_, nullptr, nullptr);
+    sqlite3_hard_heap_limit64(memory_limit_);
   }
 
  private:
   sqlite3* database_;
+  sqlite3_int64 memory_limit_;  // as it was
 };
 
 Cell cell_of(sqlite3_value* value) {
@@ -126,11 +135,12 @@ Cell cell_of(sqlite3_value* value) {
   }
 }
 
+// Texts and blobs as texts that can be printed.
 Cell cell_of(const SQLite::Column& column) {
   return column.isNull()      ? Cell()
          : column.isInteger() ? Cell(std::int64_t{column.getInt64()})
          : column.isFloat()   ? Cell(column.getDouble())
-                              : Cell(column.getString());
+                              : Cell(sim::shown(column.getString(), sim::all_shown));
 }
 
 // The SQL function shown(VALUE, UNIT).
@@ -150,22 +160,25 @@ void shown(sqlite3_context* context, int /*count*/, sqlite3_value** arguments) {
 }
 
 [[noreturn]] void fail(const std::string& place, const std::string& reason) {
-  throw sim::UserError(place + ": " + reason);
+  throw sim::UserError(place + ": " + sim::shown(reason));
 }
 
-// Whether something follows the first statement, which SQLite would leave out without a word.
-bool is_followed(sqlite3* database, const std::string& sql) {
+// What is wrong with the statement that SQLite would accept: it leaves out without a word what follows the
+// first, and explains instead of running it. Empty: nothing.
+std::string refusal_of(sqlite3* database, const std::string& sql) {
   sqlite3_stmt* statement = nullptr;
   const char* tail = nullptr;
   if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, &tail) != SQLITE_OK) {
-    return false;  // it is refused later, with the reason
+    return {};  // it is refused later, with the reason
   }
+  const bool runs = sqlite3_column_count(statement) > 0 && sqlite3_bind_parameter_count(statement) == 0 &&
+                    sqlite3_stmt_isexplain(statement) == 0;
   sqlite3_finalize(statement);
   statement = nullptr;
-  const bool nothing =
+  const bool alone =
       sqlite3_prepare_v2(database, tail, -1, &statement, nullptr) == SQLITE_OK && statement == nullptr;
   sqlite3_finalize(statement);
-  return !nothing;
+  return !alone ? "has more than one statement" : runs ? "" : "is no SELECT without parameters";
 }
 
 }  // namespace
@@ -180,6 +193,8 @@ QuerySandbox::QuerySandbox(std::string table, std::vector<std::string> columns)
   }
   database_.exec("CREATE TABLE " + sql_name(table_) + " (" + sql + ")");
   sqlite3* const handle = database_.getHandle();
+  // What a query sorts or puts aside is not written to files.
+  database_.exec("PRAGMA temp_store = MEMORY");
   // A name that no column has is an error, not a text.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, longest_value);
@@ -210,19 +225,17 @@ QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const std::string& 
                                      std::set<std::string>* reads) {
   sqlite3* const handle = database_.getHandle();
   Watched watched{table_, reads};
+  std::size_t bytes = 0;
   if (sql.find('\0') != std::string::npos) {
     fail(place, "has a character that no query has");
   }
   const Watching watching(handle, watched);
   Rows found;
   try {
-    if (is_followed(handle, sql)) {
-      fail(place, "has more than one statement");
+    if (const std::string refusal = refusal_of(handle, sql); !refusal.empty()) {
+      fail(place, refusal);
     }
     SQLite::Statement statement(database_, sql);
-    if (statement.getColumnCount() == 0 || statement.getBindParameterCount() != 0) {
-      fail(place, "is no SELECT without parameters");
-    }
     for (int column = 0; column < statement.getColumnCount(); ++column) {
       found.names.emplace_back(statement.getColumnName(column));
     }
@@ -233,11 +246,16 @@ QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const std::string& 
       std::vector<Cell>& row = found.rows.emplace_back();
       for (int column = 0; column < statement.getColumnCount(); ++column) {
         row.push_back(cell_of(statement.getColumn(column)));
+        const auto* const text = std::get_if<std::string>(&row.back());
+        bytes += text == nullptr ? 0 : text->size();
+      }
+      if (bytes > most_text) {
+        fail(place, "gives more than 10 MB of text");
       }
     }
   } catch (const SQLite::Exception& error) {
     if (error.getErrorCode() == SQLITE_NOMEM) {
-      throw std::bad_alloc();
+      fail(place, "takes more than 256 MB of memory");
     }
     const std::string_view reason = error.what();
     if (watched.too_long) {

@@ -26,11 +26,13 @@ class QuerySandbox {
     std::vector<std::string> names;  ///< of the columns, as the query gives them
     std::vector<std::vector<Cell>> rows;
   };
-  /// The rows of one SELECT over the table. Beside SQLite's own functions that depend on nothing but their
-  /// arguments it may call shown(VALUE, UNIT): the value as texts for people have it ("ps", "byte",
-  /// "fraction", ...; text_units.h). Throws the UserError "PLACE: reason" for anything else than one such
-  /// SELECT, and for one that takes more than 2 * 10^8 steps of SQLite, gives more than 10,000 rows, or makes
-  /// a value of more than 1 MB. `reads`: is given the columns of the table that it reads, if not null.
+  /// The rows of one SELECT over the table, with texts as sim::shown() makes them printable. Beside SQLite's
+  /// own functions that depend on nothing but their arguments it may call shown(VALUE, UNIT): the value as
+  /// texts for people have it ("ps", "byte", "fraction", ...; text_units.h). Throws the UserError "PLACE:
+  /// reason" for anything else than one such SELECT, and for one that takes more than 2 * 10^8 steps of
+  /// SQLite or 256 MB, gives more than 10,000 rows or 10 MB, or makes a value of more than 100 kB. One step
+  /// may take long, as to look for a long text in another. `reads`: is given the columns of the table that it
+  /// reads, if not null. No other thread may use SQLite meanwhile.
   [[nodiscard]] Rows run(const std::string& sql, const std::string& place,
                          std::set<std::string>* reads = nullptr);
 

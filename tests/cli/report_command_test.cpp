@@ -213,14 +213,14 @@ TEST_F(ReportCommand, AStudysPageBeginsWithItsVerdict) {
       "SET verdict = ?, figure = ? WHERE rowid = 1', ('FAIL', '3 cracks')); c.commit()";
   ASSERT_EQ(shell("python3 -c \"" + change + "\" " + quoted(cases / "results.sqlite")).status, 0);
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
-  EXPECT_TRUE(says("1 of 2 cases pass; the others:"));
+  EXPECT_TRUE(says("1 of 2 cases passes; the other:"));
   EXPECT_TRUE(says("cracks: 3 cracks (FAIL)."));
   // What was not measured is no claim that failed.
   const std::string unmeasured =
       change.substr(0, change.find("('FAIL'")) + "('not measured', None)); c.commit()";
   ASSERT_EQ(shell("python3 -c \"" + unmeasured + "\" " + quoted(cases / "results.sqlite")).status, 0);
   ASSERT_EQ(marti("report " + quoted(cases)).status, 0);
-  EXPECT_TRUE(says("1 of 1 cases pass."));
+  EXPECT_TRUE(says("1 of 1 case passes."));
   EXPECT_TRUE(says("Not measured here: cracks."));
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "sim/joined.h"
+#include "studies/tables/text_units.h"
 
 namespace marti::studies::report {
 
@@ -12,7 +13,7 @@ std::vector<std::string> verdict_sentences(const tables::Table& table) {
   const bool claims = table.name() == "claims";
   const auto text = [&](std::size_t row, std::string_view column) {
     const auto* found = std::get_if<std::string>(&table.at(row, column));
-    return found == nullptr ? std::string("?") : *found;
+    return found == nullptr ? std::string("-") : *found;
   };
   std::size_t holding = 0;
   std::vector<std::string> not_measured;
@@ -30,9 +31,15 @@ std::vector<std::string> verdict_sentences(const tables::Table& table) {
     }
   }
   if (const std::size_t measured = holding + others.size(); measured > 0) {
-    sentences.push_back(fmt::format("{} of {} {}{}", holding, measured,
-                                    claims ? "statements are reproduced" : "cases pass",
-                                    others.empty() ? "." : "; the others:"));
+    const bool one = holding == 1 || measured == 1;
+    sentences.push_back(fmt::format("{} of {} {}{}", holding,
+                                    tables::counted(measured, claims ? "statement" : "case"),
+                                    claims ? (one ? "is reproduced" : "are reproduced")
+                                    : one  ? "passes"
+                                           : "pass",
+                                    others.empty()       ? "."
+                                    : others.size() == 1 ? "; the other:"
+                                                         : "; the others:"));
   }
   sentences.insert(sentences.end(), others.begin(), others.end());
   if (!not_measured.empty()) {

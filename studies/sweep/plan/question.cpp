@@ -24,7 +24,7 @@ class QuestionReader {
   Question read() const {
     Question question;
     const DocumentValue::Table& section = config_.free_section("question");
-    if (section.empty()) {
+    if (section.empty() && config_.free_section_line("question") == 0) {
       return question;
     }
     for (const DocumentEntry& entry : section) {

@@ -77,8 +77,8 @@ tables::Table table_of(const QuestionTable& wanted, const tables::QuerySandbox::
     if (name.empty() || !seen.insert(name).second ||
         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") != std::string::npos) {
       throw sim::UserError(wanted.rows.place +
-                           ": each column needs a name of its own, of lower-case letters, digits and '_': AS "
-                           "name (column " +
+                           ": each column needs a name of its own, of lower-case letters, digits, '_' and "
+                           "'.': AS name (column " +
                            std::to_string(i + 1) + ")");
     }
     columns.push_back(point_column(name));
@@ -108,7 +108,10 @@ tables::Cell value_of(const tables::QuerySandbox::Rows& found) {
   return found.rows.empty() ? tables::Cell() : found.rows.front().front();
 }
 
-tables::Verdict verdict_of(const tables::Cell& agrees) {
+tables::Verdict verdict_of(const tables::Cell& agrees, const std::string& place) {
+  if (std::holds_alternative<std::string>(agrees)) {
+    throw sim::UserError(place + ": must give 1, 0 or nothing, not a text");
+  }
   const std::optional<double> number = tables::number_of(agrees);
   return number ? tables::verdict_of(*number != 0.0) : tables::Verdict::not_measured;
 }
@@ -128,7 +131,7 @@ Answers answers_from(const Question& question, tables::QuerySandbox& points) {
   }
   for (const QuestionClaim& claim : question.claims) {
     answers.claims.push_back({claim.subject, claim.says, text_of(value_of(run(claim.here))),
-                              verdict_of(value_of(run(claim.agrees)))});
+                              verdict_of(value_of(run(claim.agrees)), claim.agrees.place)});
   }
   return answers;
 }

@@ -1,6 +1,7 @@
 // The question of a sweep: queries from a file of somebody else, what they may do, and what becomes of them.
 #include "studies/sweep/plan/question.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,13 +50,22 @@ TEST(QuerySandbox, GivesRowsOfAnyType) {
   EXPECT_EQ(sandbox.run("SELECT count(*) FROM points", "").rows.front().front(), Cell(std::int64_t{3}));
 }
 
+TEST(QuerySandbox, GivesTextsThatCanBePrinted) {
+  QuerySandbox sandbox = three_rows();
+  EXPECT_EQ(sandbox.run("SELECT x'41ff', 'a' || char(10) || char(27) || char(0) || 'b'", "").rows.front(),
+            (std::vector<Cell>{"A\\xff", "a\\n\\u001b\\u0000b"}));
+}
+
 TEST(QuerySandbox, ReadsItsTableAndComputes) {
   QuerySandbox sandbox = three_rows();
   const fs::path file = fs::temp_directory_path() / "marti-query-sandbox";
-  const std::string tens =
-      "WITH t(x) AS (VALUES (0),(1),(2),(3),(4),(5),(6),(7),(8),(9)) SELECT count(*) FROM t a, t b, t c, t "
-      "d, t e, "
-      "t f, t g, t h, t i, t j";
+  const std::string digits = "WITH t(x) AS (VALUES (0),(1),(2),(3),(4),(5),(6),(7),(8),(9)) ";
+  const std::string tens = digits + "SELECT count(*) FROM t a, t b, t c, t d, t e, t f, t g, t h, t i, t j";
+  std::string unfolding = "WITH a0 AS (SELECT 1)";  // each has two of the one before it
+  for (int i = 1; i <= 30; ++i) {
+    unfolding += fmt::format(", a{0} AS (SELECT 1 FROM a{1} x, a{1} y)", i, i - 1);
+  }
+  unfolding += " SELECT count(*) FROM a30";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"DROP TABLE points", "f:1: k: may only read the table points and compute"},
       {"DELETE FROM points", "f:1: k: may only read"},
@@ -67,12 +77,23 @@ TEST(QuerySandbox, ReadsItsTableAndComputes) {
       {"SELECT load_extension('x')", "f:1: k: "},
       {"SELECT random()", "f:1: k: may only read"},
       {"SELECT CURRENT_TIMESTAMP", "f:1: k: may only read"},
+      {"SELECT unixepoch()", "f:1: k: "},
+      {"SELECT * FROM sqlite_temp_schema", "f:1: k: may only read"},
+      {"EXPLAIN SELECT 1", "f:1: k: is no SELECT"},
+      {"EXPLAIN QUERY PLAN SELECT 1", "f:1: k: is no SELECT"},
       {"SELECT datetime('now')", "f:1: k: may only read"},
       {"SELECT zeroblob(1000000000)", "f:1: k: "},
       {"SELECT replace(printf('%1000d', 1), ' ', printf('%10000d', 1))", "f:1: k: SQLite: "},
       {"WITH RECURSIVE r(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM r) SELECT x FROM r",
        "f:1: k: may only read"},
       {tens, "f:1: k: takes too long"},
+      {digits +
+           "SELECT count(*) FROM (SELECT DISTINCT printf('%90000d', a.x + 10 * b.x + 100 * c.x + 1000 * d.x) "
+           "FROM t a, t b, t c, t d)",
+       "f:1: k: takes more than 256 MB of memory"},
+      {unfolding, "f:1: k: takes more than 256 MB of memory"},
+      {digits + "SELECT printf('%99999d', 1) FROM t a, t b, t c", "f:1: k: gives more than 10 MB"},
+      {"SELECT \"\x1b[31m\"", "f:1: k: SQLite: no such column: \\u001b[31m"},
       {"SELECT 1; SELECT 2", "f:1: k: has more than one statement"},
       {"SELECT ?", "f:1: k: is no SELECT without parameters"},
       {"", "f:1: k: is no SELECT"},
@@ -96,6 +117,7 @@ sim::Config config_with(const std::string& question) {
 
 TEST(Question, RefusesWhatItIsNot) {
   const std::vector<std::pair<std::string, std::string>> cases = {
+      {"[question]", "s.toml:3: question.asks: is missing"},
       {"[question]\nanswer = \"SELECT 1\"", "s.toml:3: question.asks: is missing"},
       {"[question]\nasks = \"why?\"", "s.toml:3: question.answer: is missing"},
       {"[question]\nasks = \"why?\"\nanswer = 3",
@@ -167,6 +189,11 @@ TEST(Question, IsAnsweredFromThePointsThatAreTimed) {
   EXPECT_EQ(answers.claims[0].verdict, Verdict::agrees);
   EXPECT_EQ(answers.claims[1].verdict, Verdict::differs);
   EXPECT_EQ(answers.claims[2].verdict, Verdict::not_measured);
+  // Whether a claim holds is no text.
+  plan.question.claims[2].agrees = {"SELECT 'yes' FROM points", "s.toml:20: question.claim.agrees"};
+  { const SweepStore store(file, plan); }
+  EXPECT_EQ(user_error_of([&] { (void)answers_of(SweepReader(file)); }),
+            "s.toml:20: question.claim.agrees: must give 1, 0 or nothing, not a text");
   // Another question of the same points needs no machine timed again.
   plan.question = {};
   SweepStore store(file, plan);
