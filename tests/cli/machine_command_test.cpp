@@ -98,7 +98,7 @@ TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
     const nlohmann::json without = printed_json(arguments)["figures"]["machine"];
     nlohmann::json with = printed_json(arguments + " --set energy.preset=22nm")["figures"]["machine"];
     std::int64_t sum = 0;
-    for (const char* part : {"operations", "l1", "l2", "interconnect", "memory", "leakage"}) {
+    for (const char* part : {"operations", "unit", "l1", "l2", "interconnect", "memory", "leakage"}) {
       sum += with["energy_" + std::string(part)].get<std::int64_t>();
       with.erase("energy_" + std::string(part));
     }
@@ -109,8 +109,9 @@ TEST(MachineCommand, EnergyAddsUpAndChangesNoOtherFigure) {
     EXPECT_DOUBLE_EQ(with["energy"].get<double>(), static_cast<double>(total) * 1e-12);
     EXPECT_DOUBLE_EQ(with["power"].get<double>(), static_cast<double>(total) * 1e-15 / (end * 1e-12));
     EXPECT_DOUBLE_EQ(with["energy_delay"].get<double>(), static_cast<double>(total) * 1e-9 * end * 1e-12);
-    for (const char* figure : {"energy_total", "energy_area", "energy", "power", "rays_a_joule",
-                               "energy_a_ray", "energy_delay", "area"}) {
+    for (const char* figure :
+         {"energy_total", "energy_area", "energy_cache_area", "energy_unit_area", "energy", "power",
+          "rays_a_joule", "rays_a_second_mm2", "energy_a_ray", "energy_delay", "area"}) {
       EXPECT_EQ(with.erase(figure), 1U) << figure;
     }
     EXPECT_EQ(with, without) << config;

@@ -224,7 +224,9 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
                 make_word(Step::branch, 0), make_word(Step::leaf, 2), make_word(Step::light, 0),
                 ray(RayKind::camera, 0), make_word(Step::leaf, 1), ray(RayKind::camera, 0),
                 make_word(Step::branch, 0)},
-               {0, 9, 11, 13}}};
+               {0, 9, 11, 13},
+               {},
+               {}}};
   StepTicks ticks;
   ticks.ray = {1, 2, 3, 4};
   ticks.branch = 10;
