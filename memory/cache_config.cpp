@@ -3,6 +3,7 @@
 #include <bit>
 #include <string>
 
+#include "memory/policies.h"
 #include "sim/error.h"
 
 namespace marti::memory {
@@ -25,10 +26,7 @@ CacheShape shape_of(const CacheConfig& config) {
     throw sim::UserError("a cache of " + std::to_string(lines) + " lines cannot be divided into sets of " +
                          std::to_string(ways) + " ways");
   }
-  if (config.replacement == Replacement::plru && !std::has_single_bit(ways)) {
-    throw sim::UserError("tree-PLRU replacement needs sets of a power of two of ways, not of " +
-                         std::to_string(ways));
-  }
+  with_policy(config.replacement, [ways]<Replacement Policy>() { VictimsOf<Policy>::check(ways); });
   return {static_cast<std::uint32_t>(lines / ways), static_cast<std::uint32_t>(ways),
           static_cast<std::uint32_t>(std::countr_zero(config.line))};
 }

@@ -1,6 +1,6 @@
 // Tags of caches with many ways (up to fully associative). Each set has a hash table from line to way, and
-// either, for LRU and FIFO, a list of its ways from the newest to the oldest, or a tree of bits. The time of
-// a look-up does not depend on the number of ways.
+// for LRU and FIFO a list of its ways from the newest to the oldest; other policies have a state of their
+// own. The time of a look-up does not depend on the number of ways.
 #pragma once
 
 #include <cstdint>
@@ -21,17 +21,8 @@ class HashedTags {
         slots_(slots_for(shape.ways)),
         ways_of_sets_(std::size_t{caches} * shape.lines()),
         table_(std::size_t{caches} * shape.sets * slots_, empty),
-        state_(std::size_t{caches} * shape.sets) {
-    if constexpr (Policy == Replacement::random) {
-      victims_.reserve(state_.size());
-      for (std::uint64_t set = 0; set < state_.size(); ++set) {
-        victims_.emplace_back(seed, set);
-      }
-    }
-    if constexpr (Policy == Replacement::plru) {
-      trees_ = PlruTrees(state_.size(), shape.ways);
-    }
-  }
+        state_(std::size_t{caches} * shape.sets),
+        victims_(state_.size(), shape.ways, seed) {}
 
   /// One of the caches, with the members of SetTags::View.
   class View {
@@ -50,13 +41,7 @@ class HashedTags {
 
  private:
   // Whether a list of the ways gives the oldest one.
-  static constexpr bool listed = Policy == Replacement::lru || Policy == Replacement::fifo;
-
-  void use(std::size_t set, std::uint32_t way) {
-    if constexpr (Policy == Replacement::plru) {
-      trees_.use(set, way);
-    }
-  }
+  static constexpr bool listed = !stays_in_way<Policy>;
 
   bool access(std::uint32_t cache, std::uint32_t line) {
     const std::size_t set = std::size_t{cache} * sets_ + index_(line);
@@ -67,7 +52,9 @@ class HashedTags {
       if constexpr (Policy == Replacement::lru) {
         move_to_front(state, ways, held);
       }
-      use(set, held);
+      if constexpr (!listed) {
+        victims_.use(set, held);
+      }
       return true;
     }
     const std::uint32_t way = free_way(state, ways, table, set);
@@ -75,8 +62,9 @@ class HashedTags {
     insert(table, ways, way);
     if constexpr (listed) {
       push_front(state, ways, way);
+    } else {
+      victims_.fill(set, way);
     }
-    use(set, way);
     return false;
   }
 
@@ -184,12 +172,10 @@ class HashedTags {
       return state.used++;
     }
     std::uint32_t victim = state.oldest;
-    if constexpr (Policy == Replacement::random) {
-      victim = victims_[set].next(ways_);
-    } else if constexpr (Policy == Replacement::plru) {
-      victim = trees_.victim(set);
-    } else {
+    if constexpr (listed) {
       unlink(state, ways, victim);
+    } else {
+      victim = victims_.victim(set);
     }
     erase(table, ways, ways[victim].line);
     return victim;
@@ -220,8 +206,7 @@ class HashedTags {
   std::vector<Way> ways_of_sets_;
   std::vector<std::uint32_t> table_;
   std::vector<Set> state_;
-  std::vector<VictimStream> victims_;
-  PlruTrees trees_;
+  [[no_unique_address]] VictimsOf<Policy> victims_;
 };
 
 }  // namespace marti::memory

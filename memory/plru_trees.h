@@ -10,18 +10,27 @@
 
 #include <bit>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include "sim/error.h"
 
 namespace marti::memory {
 
 class PlruTrees {
  public:
-  PlruTrees() = default;
-  /// `ways` must be a power of two.
-  PlruTrees(std::size_t sets, std::uint32_t ways)
+  PlruTrees(std::size_t sets, std::uint32_t ways, std::uint64_t /*seed*/)
       : ways_(ways), words_((ways + word_bits - 1) / word_bits), bits_(sets * words_) {}
 
-  /// Notes that `way` of the set has been used or filled.
+  static void check(std::uint64_t ways) {
+    if (!std::has_single_bit(ways)) {
+      throw sim::UserError("tree-PLRU replacement needs sets of a power of two of ways, not of " +
+                           std::to_string(ways));
+    }
+  }
+  static std::uint64_t bytes_a_set(std::uint64_t ways) { return 8 + ways / 8; }
+
+  void fill(std::size_t set, std::uint32_t way) { use(set, way); }
   void use(std::size_t set, std::uint32_t way) {
     std::uint64_t* const bits = bits_.data() + set * words_;
     // Numbered as a heap: the root is 1, below n are 2 n and 2 n + 1, and the ways follow the last bit.
@@ -42,12 +51,13 @@ class PlruTrees {
     }
     return at - ways_;
   }
+  static constexpr bool counts_repeats = false;
 
  private:
   static constexpr std::uint32_t word_bits = 64;
 
-  std::uint32_t ways_ = 1;
-  std::size_t words_ = 1;
+  std::uint32_t ways_;
+  std::size_t words_;
   std::vector<std::uint64_t> bits_;
 };
 

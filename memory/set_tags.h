@@ -6,10 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "memory/cache_config.h"
-#include "memory/plru_trees.h"
+#include "memory/policies.h"
 #include "sim/large_pages.h"
 
 namespace marti::memory {
@@ -31,23 +30,16 @@ class SetIndex {
 
 /// `Policy` decides the victim; `Ways` is the number of ways if it is known at compile time, else 0. Within a
 /// set, LRU and FIFO keep the newest line first (LRU also moves a line to the front when it hits), so the
-/// victim is always the last; random replacement and tree-PLRU leave lines in their ways.
+/// victim is always the last; under other policies lines stay in their ways (victims.h).
 template <Replacement Policy, std::uint32_t Ways>
 class SetTags {
  public:
   SetTags(const CacheShape& shape, std::uint32_t caches, std::uint64_t seed)
-      : index_(shape.sets), sets_(shape.sets), ways_(shape.ways), tags_(std::size_t{caches} * shape.lines()) {
-    if constexpr (Policy == Replacement::random) {
-      const std::uint64_t all_sets = std::uint64_t{caches} * shape.sets;
-      victims_.reserve(all_sets);
-      for (std::uint64_t set = 0; set < all_sets; ++set) {
-        victims_.emplace_back(seed, set);
-      }
-    }
-    if constexpr (Policy == Replacement::plru) {
-      trees_ = PlruTrees(std::size_t{caches} * shape.sets, shape.ways);
-    }
-  }
+      : index_(shape.sets),
+        sets_(shape.sets),
+        ways_(shape.ways),
+        tags_(std::size_t{caches} * shape.lines()),
+        victims_(std::size_t{caches} * shape.sets, shape.ways, seed) {}
 
   /// One of the caches, with everything that a look-up needs in registers. It must not outlive the store.
   class View {
@@ -73,7 +65,7 @@ class SetTags {
       while (at < ways && tags[at] != tag) {
         ++at;
       }
-      if constexpr (stays) {
+      if constexpr (stays_in_way<Policy>) {
         if (at < ways) {
           use(set, at);
           return true;
@@ -110,7 +102,7 @@ class SetTags {
       if (at == end) {
         return false;
       }
-      if constexpr (stays) {
+      if constexpr (stays_in_way<Policy>) {
         *at = empty;
       } else {
         // Empty ways count as the oldest, so they are kept last.
@@ -125,8 +117,8 @@ class SetTags {
       return tags_ + std::size_t{set} * (Ways == 0 ? ways_ : Ways);
     }
     void use(std::uint32_t set, std::uint32_t way) const {
-      if constexpr (Policy == Replacement::plru) {
-        store_->trees_.use(first_set_ + set, way);
+      if constexpr (stays_in_way<Policy>) {
+        store_->victims_.use(first_set_ + set, way);
       }
     }
     // Fills the first empty way; where all are full, replaces a victim.
@@ -136,10 +128,10 @@ class SetTags {
         ++way;
       }
       if (way == ways) {
-        way = store_->victim(first_set_ + set, ways);
+        way = store_->victims_.victim(first_set_ + set);
       }
       tags[way] = tag;
-      use(set, way);
+      store_->victims_.fill(first_set_ + set, way);
     }
 
     SetTags* store_;
@@ -153,23 +145,12 @@ class SetTags {
  private:
   // Tags are the complements of the lines' numbers, so that empty ways are 0.
   static constexpr std::uint32_t empty = ~no_line;
-  // Whether lines stay in the way that they were brought into.
-  static constexpr bool stays = Policy == Replacement::random || Policy == Replacement::plru;
-
-  [[nodiscard]] std::uint32_t victim(std::size_t set, std::uint32_t ways) {
-    if constexpr (Policy == Replacement::plru) {
-      return trees_.victim(set);
-    } else {
-      return victims_[set].next(ways);
-    }
-  }
 
   SetIndex index_;
   std::uint32_t sets_;
   std::uint32_t ways_;
   sim::ZeroedTable<std::uint32_t> tags_;
-  std::vector<VictimStream> victims_;
-  PlruTrees trees_;
+  [[no_unique_address]] VictimsOf<Policy> victims_;
 };
 
 }  // namespace marti::memory

@@ -1,9 +1,8 @@
 // Chooses the tag store for a cache: turns a configuration at run time into one of the compiled look-ups.
 #pragma once
 
-#include <utility>
-
 #include "memory/hashed_tags.h"
+#include "memory/policies.h"
 #include "memory/quad_tags.h"
 #include "memory/set_tags.h"
 
@@ -16,18 +15,11 @@ inline constexpr std::uint32_t most_searched_ways = 16;
 template <class Use>
 decltype(auto) with_tag_store(Replacement replacement, const CacheShape& shape, Use&& use) {
   const bool hashed = shape.ways > most_searched_ways;
-  switch (replacement) {
-    case Replacement::fifo:
-      return hashed ? use.template operator()<HashedTags<Replacement::fifo>>()
-                    : use.template operator()<SetTags<Replacement::fifo, 0>>();
-    case Replacement::random:
-      return hashed ? use.template operator()<HashedTags<Replacement::random>>()
-                    : use.template operator()<SetTags<Replacement::random, 0>>();
-    case Replacement::plru:
-      return hashed ? use.template operator()<HashedTags<Replacement::plru>>()
-                    : use.template operator()<SetTags<Replacement::plru, 0>>();
-    case Replacement::lru:
-      break;
+  if (replacement != Replacement::lru) {
+    return with_policy(replacement, [&]<Replacement Policy>() -> decltype(auto) {
+      return hashed ? use.template operator()<HashedTags<Policy>>()
+                    : use.template operator()<SetTags<Policy, 0>>();
+    });
   }
   switch (shape.ways) {
     case 1:

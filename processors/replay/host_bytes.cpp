@@ -25,11 +25,10 @@ std::uint64_t tag_bytes(const memory::CacheConfig& cache) {
   const memory::CacheShape shape = memory::shape_of(cache);
   // Hashed sets keep a list entry and two to four table slots for each line.
   const std::uint64_t bytes_a_line = shape.ways > memory::most_searched_ways ? 28 : 6;
-  // Each set has a tree, whose bits take at least a word, or a stream of random numbers.
-  const bool has_state =
-      cache.replacement == memory::Replacement::plru || cache.replacement == memory::Replacement::random;
-  const std::uint64_t state_bytes = has_state ? 8 * std::uint64_t{shape.sets} + shape.lines() / 8 : 0;
-  return shape.lines() * bytes_a_line + state_bytes;
+  const std::uint64_t bytes_a_set = memory::with_policy(cache.replacement, [&]<memory::Replacement Policy>() {
+    return memory::VictimsOf<Policy>::bytes_a_set(shape.ways);
+  });
+  return shape.lines() * bytes_a_line + shape.sets * bytes_a_set;
 }
 
 }  // namespace

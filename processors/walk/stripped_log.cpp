@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "memory/policies.h"
 #include "memory/recency_lists.h"
 #include "processors/machine/packets.h"
 #include "processors/walk/kept_visits.h"
@@ -179,6 +180,13 @@ std::string StrippedLog::key_of(const machine::MachineConfig& config) {
   if (config.scheme != machine::Scheme::image || config.build.sharing != machine::Sharing::given ||
       config.cache.organisation == machine::CacheOrganisation::none || config.contexts > 1 ||
       config.prefetch.on() || config.kind == machine::NodeKind::simt || config.count.any()) {
+    return {};
+  }
+  // A stripped log leaves out that a line is asked for twice in a row.
+  if (config.cache.cache.ways != 1 &&
+      memory::with_policy(config.cache.cache.replacement, []<memory::Replacement Policy>() {
+        return memory::VictimsOf<Policy>::counts_repeats;
+      })) {
     return {};
   }
   std::string key;

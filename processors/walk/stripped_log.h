@@ -54,7 +54,7 @@ class StrippedLog {
   /// The properties of a machine that decide which lines it asks for, in which sets, and the cycles between:
   /// stripped logs for machines of equal keys are made in one pass. Empty for a machine that cannot use one:
   /// with another scheme than image, without caches, with a tree that is built, with contexts, prefetching,
-  /// or counting of more than hits and misses.
+  /// counting of more than hits and misses, or replacement that counts repeats (memory/victims.h).
   [[nodiscard]] static std::string key_of(const machine::MachineConfig& config);
   /// The ways of the LRU caches for which a log must be stripped to suit the machine; 0 where only references
   /// to the newest line may be taken out. Machines of equal keys and ways share a stripped log.

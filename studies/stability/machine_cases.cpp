@@ -312,6 +312,7 @@ CaseOutcome caches(const Subject& subject) {
                                            {128ULL * line, line, 1},
                                            {128ULL * line, line, 4, Replacement::plru},
                                            {128ULL * line, line, 4, Replacement::random},
+                                           {128ULL * line, line, 4, Replacement::srrip},
                                            {3ULL * line, line, 3, Replacement::fifo},
                                            {all, line, memory::full_ways},
                                            {all, line, 1}}) {

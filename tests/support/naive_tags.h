@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "memory/cache_config.h"
+#include "memory/random_victims.h"
 
 namespace marti::test {
 
@@ -19,6 +19,7 @@ class NaiveTags {
       : replacement_(config.replacement), shape_(memory::shape_of(config)), sets_(shape_.sets) {
     for (std::uint32_t set = 0; set < shape_.sets; ++set) {
       sets_[set].away.assign(shape_.ways, false);
+      sets_[set].wait.assign(shape_.ways, 0);
       sets_[set].victims.emplace(config.seed, std::uint64_t{number} * shape_.sets + set);
     }
   }
@@ -46,6 +47,7 @@ class NaiveTags {
         at = set.lines.begin() + victim(set);
       }
       *at = Line{line, {}};
+      set.wait[static_cast<std::size_t>(at - set.lines.begin())] = 2;
       if (in_order()) {
         std::rotate(set.lines.begin(), at, at + 1);
         at = set.lines.begin();
@@ -53,6 +55,8 @@ class NaiveTags {
     } else if (replacement_ == memory::Replacement::lru) {
       std::rotate(set.lines.begin(), at, at + 1);
       at = set.lines.begin();
+    } else {
+      set.wait[static_cast<std::size_t>(at - set.lines.begin())] = 0;
     }
     (*at)->sectors.insert(sector);
     point_away(set, static_cast<std::size_t>(at - set.lines.begin()));
@@ -67,6 +71,7 @@ class NaiveTags {
   struct Set {
     std::vector<std::optional<Line>> lines;  // lru and fifo: the newest first
     std::vector<bool> away;  // plru, by inner node of the tree: whether the right half is next
+    std::vector<int> wait;   // srrip, by way: for how long nobody is expected to want it, 0 to 3
     std::optional<memory::VictimStream> victims;
   };
 
@@ -79,6 +84,14 @@ class NaiveTags {
     }
     if (replacement_ == memory::Replacement::random) {
       return set.victims->next(shape_.ways);
+    }
+    if (replacement_ == memory::Replacement::srrip) {
+      while (std::find(set.wait.begin(), set.wait.end(), 3) == set.wait.end()) {
+        for (int& each : set.wait) {
+          ++each;
+        }
+      }
+      return std::find(set.wait.begin(), set.wait.end(), 3) - set.wait.begin();
     }
     std::size_t first = 0;
     std::size_t node = 1;

@@ -287,7 +287,8 @@ inline void add_random_second_level(Random& random, processors::machine::Machine
   memory::CacheConfig& cache = machine.l2.cache;
   const bool none = machine.cache.organisation == processors::machine::CacheOrganisation::none;
   cache.line = none ? machine.banks.interleave : machine.cache.cache.line;
-  cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
+  cache.replacement = static_cast<memory::Replacement>(
+      pick(random, 0, static_cast<int>(memory::replacement_names.size()) - 1));
   cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 4, 6, 8, 32}[random() % 7]);
   cache.size =
       std::uint64_t{cache.line} * std::max(1U, cache.ways) * static_cast<std::uint64_t>(pick(random, 1, 12));
@@ -319,7 +320,8 @@ inline processors::machine::MachineConfig random_machine(Random& random, std::ui
   machine.cache.organisation = static_cast<processors::machine::CacheOrganisation>(pick(random, 0, 2));
   machine.cache.hit_cycles = pick(random, 0, 2);
   machine.cache.cache.line = 1U << pick(random, 2, 6);
-  machine.cache.cache.replacement = static_cast<memory::Replacement>(pick(random, 0, 3));
+  machine.cache.cache.replacement = static_cast<memory::Replacement>(
+      pick(random, 0, static_cast<int>(memory::replacement_names.size()) - 1));
   machine.cache.cache.ways = static_cast<std::uint32_t>(std::array{0, 1, 2, 3, 4, 8, 24}[random() % 7]);
   const std::uint32_t ways = std::max(1U, machine.cache.cache.ways);
   machine.cache.cache.size =

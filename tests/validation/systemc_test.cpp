@@ -126,8 +126,9 @@ TEST(SystemC, TheMachinesDoWhatTheModelCanDo) {
   }
   for (const auto organisation :
        {processors::machine::CacheOrganisation::unified, processors::machine::CacheOrganisation::split}) {
-    for (const auto replacement : {memory::Replacement::lru, memory::Replacement::fifo,
-                                   memory::Replacement::random, memory::Replacement::plru}) {
+    for (const auto replacement :
+         {memory::Replacement::lru, memory::Replacement::fifo, memory::Replacement::random,
+          memory::Replacement::plru, memory::Replacement::srrip}) {
       expect_some("hits and misses of each cache", [=](const MachineConfig& c, const MachineResult& r) {
         return c.cache.organisation == organisation && c.cache.cache.replacement == replacement &&
                c.cache.cache.ways != 1 && r.references().all_hits() > 0 &&

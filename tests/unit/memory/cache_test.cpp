@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "memory/random_victims.h"
 #include "memory/tags.h"
 #include "sim/error.h"
 

@@ -65,7 +65,7 @@ RC_GTEST_PROP(LeftOut, CachesThatHoldAllReplaceNothingAndOthersDo, (std::uint64_
   test::Random random(seed);
   const memory::CacheShape shape = {static_cast<std::uint32_t>(test::pick(random, 1, 9)),
                                     1U << test::pick(random, 0, 3), 2};
-  const auto policy = static_cast<memory::Replacement>(test::pick(random, 0, 3));
+  const auto policy = static_cast<memory::Replacement>(test::pick(random, 0, 4));
   const auto lines = static_cast<std::uint32_t>(shape.lines());
   RC_ASSERT(memory::holds_all(shape, lines));
   RC_ASSERT(!memory::holds_all(shape, lines + 1));

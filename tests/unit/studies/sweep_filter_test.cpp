@@ -110,8 +110,8 @@ TEST(SweepFilter, RefusesWhatIsNoExpressionOverKeys) {
       {"not (machine.nodes <> '4')", "here: machine.nodes is no text"},
       {"cache.size > 'x' or machine.nodes > 0", "here: cache.size is no text"},
       {"cache.replacement <> 'lruu'",
-       "here: cache.replacement is never 'lruu' (did you mean \"lru\"?); it is lru, fifo, random or "
-       "plru"},
+       "here: cache.replacement is never 'lruu' (did you mean \"lru\"?); it is lru, fifo, random, plru or "
+       "srrip"},
       {"interconnect.kind in ('bus', 'crosbar')", "here: interconnect.kind is never 'crosbar'"},
       {"cache.replacement > 3", "here: cache.replacement is a text and cannot be compared with 3"},
       {"cache.size < 4 MHz", "here: cache.size is a size and cannot be compared with 4 MHz"},

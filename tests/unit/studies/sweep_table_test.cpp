@@ -95,7 +95,7 @@ TEST(SweepTable, WrongInputIsNamedWithFileLineAndKey) {
       {"[sweep.axes]\ncache.size = [\"4 KB\"]\n", "s.toml:2: cache.size: "},
       {"[sweep.axes]\ncache.ways = [1,\n 2, 1]\n", "s.toml:3: cache.ways: lists 1 twice"},
       {"[sweep.axes]\ncache.replacement = [\"lur\"]\n",
-       "s.toml:2: cache.replacement: must be lru, fifo, random or plru, not \"lur\" (did you mean "
+       "s.toml:2: cache.replacement: must be lru, fifo, random, plru or srrip, not \"lur\" (did you mean "
        "\"lru\"?)"},
       {"[sweep.axes]\nhost_machine.memory_limit = [1]\n",
        "s.toml:2: host_machine.memory_limit: says nothing"},

@@ -19,6 +19,7 @@ class NaiveCache {
         sets_(size / config.line / ways_) {
     for (std::uint64_t set = 0; set < sets_.size(); ++set) {
       sets_[set].points_right.resize(config.replacement == memory::Replacement::plru ? ways_ : 0);
+      sets_[set].distance.resize(config.replacement == memory::Replacement::srrip ? ways_ : 0);
       sets_[set].draws = config.seed + (cache * sets_.size() + set) * 0xd1342543de82ef95ULL;
     }
   }
@@ -32,6 +33,8 @@ class NaiveCache {
         set.lines.splice(set.lines.end(), set.lines, found);
       } else if (replacement_ == memory::Replacement::plru) {
         turn_away(set, static_cast<std::uint64_t>(std::distance(set.lines.begin(), found)));
+      } else if (replacement_ == memory::Replacement::srrip) {
+        set.distance[static_cast<std::size_t>(std::distance(set.lines.begin(), found))] = 0;
       }
       return true;
     }
@@ -40,10 +43,11 @@ class NaiveCache {
   }
 
  private:
-  /// Lines in the order of their last use (lru), of their coming in (fifo), or way by way (random, plru).
+  /// Lines in the order of their last use (lru), of their coming in (fifo), or way by way (others).
   struct Set {
     std::list<std::uint64_t> lines;
     std::uint64_t draws = 0;         ///< random: the state of the stream
+    std::vector<int> distance;       ///< srrip: of each way, 3 at most
     std::vector<bool> points_right;  ///< plru: each node of the tree; the root is 1, below n are 2 n, 2 n + 1
   };
 
@@ -51,8 +55,10 @@ class NaiveCache {
     std::uint64_t way = set.lines.size();
     if (way < ways_) {
       set.lines.push_back(line);
-    } else if (replacement_ == memory::Replacement::random || replacement_ == memory::Replacement::plru) {
-      way = replacement_ == memory::Replacement::random ? draw(set) : pointed_at(set);
+    } else if (replacement_ != memory::Replacement::lru && replacement_ != memory::Replacement::fifo) {
+      way = replacement_ == memory::Replacement::random  ? draw(set)
+            : replacement_ == memory::Replacement::srrip ? most_distant(set)
+                                                         : pointed_at(set);
       *std::next(set.lines.begin(), static_cast<std::ptrdiff_t>(way)) = line;
     } else {
       set.lines.pop_front();
@@ -60,6 +66,22 @@ class NaiveCache {
     }
     if (replacement_ == memory::Replacement::plru) {
       turn_away(set, way);
+    } else if (replacement_ == memory::Replacement::srrip) {
+      set.distance[way] = 2;
+    }
+  }
+
+  // All move away by one until the first is at 3.
+  static std::uint64_t most_distant(Set& set) {
+    for (;;) {
+      for (std::uint64_t way = 0; way < set.distance.size(); ++way) {
+        if (set.distance[way] == 3) {
+          return way;
+        }
+      }
+      for (int& each : set.distance) {
+        ++each;
+      }
     }
   }
 

@@ -22,8 +22,10 @@ void refuse(const processors::machine::NodeCacheConfig& config) {
   [[maybe_unused]] const auto& [size, line, ways, replacement, seed] = cache;
   ensure_one_of(organisation, {CacheOrganisation::none, CacheOrganisation::unified, CacheOrganisation::split},
                 "the SystemC model has no such cache organisation");
-  ensure_one_of(replacement, {Replacement::lru, Replacement::fifo, Replacement::random, Replacement::plru},
-                "the SystemC model has no such replacement");
+  ensure_one_of(
+      replacement,
+      {Replacement::lru, Replacement::fifo, Replacement::random, Replacement::plru, Replacement::srrip},
+      "the SystemC model has no such replacement");
 }
 
 void refuse(const memory::InterconnectConfig& config) {

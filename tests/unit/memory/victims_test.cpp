@@ -1,10 +1,12 @@
-// Tree-PLRU against a model of it that is a tree: halves within halves, each with a pointer.
+// Policies whose lines stay in their ways, against models: tree-PLRU against halves within halves, each with
+// a pointer; SRRIP against lines that are sorted anew for each victim.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "memory/cache.h"
@@ -43,26 +45,56 @@ class Half {
   std::array<std::unique_ptr<Half>, 2> halves_;
 };
 
-class TreeModel {
+class Tree {
  public:
-  TreeModel(std::uint32_t sets, std::uint32_t ways) {
+  explicit Tree(std::uint32_t ways) : halves_(0, ways) {}
+  void fill(std::uint32_t way) { halves_.use(way); }
+  void use(std::uint32_t way) { halves_.use(way); }
+  [[nodiscard]] std::uint32_t victim() const { return halves_.victim(); }
+
+ private:
+  Half halves_;
+};
+
+// Each line has the time at which it would be 3, if time went on by 1 for each step of all counters.
+class Predictions {
+ public:
+  explicit Predictions(std::uint32_t ways) : due_(ways, 0) {}
+  void fill(std::uint32_t way) { due_[way] = now_ + 1; }
+  void use(std::uint32_t way) { due_[way] = now_ + 3; }
+  std::uint32_t victim() {
+    const auto first = std::min_element(due_.begin(), due_.end());
+    now_ = std::max(now_, *first);
+    return static_cast<std::uint32_t>(first - due_.begin());
+  }
+
+ private:
+  std::vector<std::int64_t> due_;
+  std::int64_t now_ = 0;
+};
+
+template <class Victims>
+class Model {
+ public:
+  Model(std::uint32_t sets, std::uint32_t ways) {
     for (std::uint32_t set = 0; set < sets; ++set) {
-      sets_.push_back({Half(0, ways), std::vector<std::uint32_t>(ways, nothing)});
+      sets_.push_back({Victims(ways), std::vector<std::uint32_t>(ways, nothing)});
     }
   }
   bool access(std::uint32_t line) {
     Set& set = sets_[line % sets_.size()];
     auto at = std::find(set.lines.begin(), set.lines.end(), line);
-    const bool hit = at != set.lines.end();
-    if (!hit) {
-      at = std::find(set.lines.begin(), set.lines.end(), nothing);
-      if (at == set.lines.end()) {
-        at = set.lines.begin() + set.tree.victim();
-      }
-      *at = line;
+    if (at != set.lines.end()) {
+      set.victims.use(static_cast<std::uint32_t>(at - set.lines.begin()));
+      return true;
     }
-    set.tree.use(static_cast<std::uint32_t>(at - set.lines.begin()));
-    return hit;
+    at = std::find(set.lines.begin(), set.lines.end(), nothing);
+    if (at == set.lines.end()) {
+      at = set.lines.begin() + set.victims.victim();
+    }
+    *at = line;
+    set.victims.fill(static_cast<std::uint32_t>(at - set.lines.begin()));
+    return false;
   }
   bool holds(std::uint32_t line) const {
     const Set& set = sets_[line % sets_.size()];
@@ -80,7 +112,7 @@ class TreeModel {
 
  private:
   struct Set {
-    Half tree;
+    Victims victims;
     std::vector<std::uint32_t> lines;
   };
   std::vector<Set> sets_;
@@ -95,15 +127,17 @@ CacheConfig config_of(std::uint32_t ways, std::uint32_t sets, Replacement replac
   return config;
 }
 
-TEST(TreePlru, AgreesWithATreeOfHalvesWhileLinesAreUsedTouchedAndTakenOut) {
+// While lines are used, touched and taken out.
+template <class Victims>
+void expect_agreement(Replacement policy, std::span<const std::uint32_t> all_ways) {
   std::mt19937_64 random(1);
-  for (const std::uint32_t ways : {1U, 2U, 4U, 8U, 16U, 32U, 64U, 128U, 512U}) {
+  for (const std::uint32_t ways : all_ways) {
     for (int round = 0; round < 6; ++round) {
       const auto sets = static_cast<std::uint32_t>(1 + random() % 5);
-      const CacheShape shape = shape_of(config_of(ways, sets, Replacement::plru));
-      with_tag_store(Replacement::plru, shape, [&]<class Tags>() {
+      const CacheShape shape = shape_of(config_of(ways, sets, policy));
+      with_tag_store(policy, shape, [&]<class Tags>() {
         Tags tags(shape, 2, 1);  // the other cache's sets must not matter
-        TreeModel model(sets, ways);
+        Model<Victims> model(sets, ways);
         for (std::uint32_t i = 0; i < 40 * ways + 1000; ++i) {
           const auto line = static_cast<std::uint32_t>(random() % (2 * ways * sets));
           switch (random() % 8) {
@@ -123,6 +157,36 @@ TEST(TreePlru, AgreesWithATreeOfHalvesWhileLinesAreUsedTouchedAndTakenOut) {
       });
     }
   }
+}
+
+TEST(TreePlru, AgreesWithATreeOfHalves) {
+  expect_agreement<Tree>(Replacement::plru, std::array{1U, 2U, 4U, 8U, 16U, 32U, 64U, 128U, 512U});
+}
+
+TEST(Rrip, AgreesWithPredictedTimes) {
+  expect_agreement<Predictions>(Replacement::srrip, std::array{1U, 2U, 3U, 5U, 8U, 16U, 17U, 64U, 100U});
+}
+
+// The example of Jaleel et al.: lines that are used again outlive any number of lines that are used once.
+TEST(Rrip, KeepsWhatIsUsedAgainWhileAStreamPasses) {
+  Cache cache(config_of(8, 1, Replacement::srrip));
+  for (const Address line : {0, 1, 2, 3, 0, 1, 2, 3}) {
+    (void)cache.read(line, 1);
+  }
+  for (Address stream = 100; stream < 104; ++stream) {
+    (void)cache.read(stream, 1);
+  }
+  for (Address stream = 200; stream < 1000; ++stream) {
+    EXPECT_EQ(cache.read(stream, 1), 1U);
+    for (const Address line : {0, 1, 2, 3}) {
+      EXPECT_EQ(cache.read(line, 1), 0U) << "after line " << stream;
+    }
+  }
+}
+
+TEST(Rrip, RefusesSetsThatAreSearchedTooLong) {
+  EXPECT_NO_THROW(Cache(config_of(65'536, 1, Replacement::srrip)));
+  EXPECT_THROW(Cache(config_of(65'537, 1, Replacement::srrip)), sim::UserError);
 }
 
 TEST(TreePlru, NeverReplacesOneOfTheLinesUsedLast) {
