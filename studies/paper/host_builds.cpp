@@ -77,8 +77,8 @@ std::vector<RunOutcomes> time_initial_levels(const PaperConfig& config, std::spa
   sim::plan_parts(meter, "trees on this computer", config.host_repetitions != 0 ? machines.size() : 0);
   sim::begin_part(meter, "timing initial trees");
   tbb::parallel_for(std::size_t{0}, machines.size(), [&](std::size_t i) {
-    const auto [run, level] = machines[i];
-    LevelOutcome& outcome = outcomes[run].levels[level];
+    const std::size_t run = machines[i].first;
+    LevelOutcome& outcome = outcomes[run].levels[machines[i].second];
     sim::once(
         meter, "machines", name_of(outcomes[run].run) + " " + std::to_string(outcome.initial.level),
         [&] {

@@ -183,7 +183,7 @@ std::string refusal_of(sqlite3* database, const std::string& sql) {
 
 }  // namespace
 
-QuerySandbox::QuerySandbox(std::string table, std::vector<std::string> columns)
+QuerySandbox::QuerySandbox(std::string table, const std::vector<std::string>& columns)
     : database_(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_MEMORY | SQLite::OPEN_NOMUTEX),
       table_(std::move(table)),
       insert_(insert_sql(sql_name(table_), columns.size())) {

@@ -17,7 +17,7 @@ namespace marti::studies::tables {
 class QuerySandbox {
  public:
   /// Of an empty table of this name with these columns, which differ.
-  QuerySandbox(std::string table, std::vector<std::string> columns);
+  QuerySandbox(std::string table, const std::vector<std::string>& columns);
 
   /// Adds a row, a cell for each column.
   void add_row(std::span<const Cell> cells);
