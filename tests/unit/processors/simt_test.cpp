@@ -118,7 +118,7 @@ TEST(Simt, EqualsTheNaiveOneOnRandomMachines) {
   });
   for (const std::int64_t value :
        {prefetches.useful, prefetches.useless, prefetches.late, prefetches.dropped}) {
-    EXPECT_GT(value, 100);
+    EXPECT_GT(value, 20);  // of a fifth of the machines, too
   }
 }
 
