@@ -24,9 +24,9 @@ struct Treelets {
   std::vector<std::uint32_t> of_node;  ///< the treelet of each node's record, or else of its parent's
 };
 
-/// By treelets of at most `most` records: breadth-first from a treelet's top as far as it is filled; each
-/// branch whose children do not fit begins a treelet with them, and these follow depth-first. Children that
-/// alone are too many make a treelet, too.
+/// Cuts the tree into treelets of at most `most` records. A treelet is filled breadth-first from its first
+/// records. Where the children of one of its branches do not fit, they begin a treelet of their own; treelets
+/// follow each other depth-first. Children of one branch stay together, even if they are more than `most`.
 [[nodiscard]] Treelets treelets_of(const Topology& topology, bool leaf_records, std::uint32_t most);
 
 }  // namespace marti::accel

@@ -28,8 +28,8 @@
 #include "bench/report.h"
 #include "processors/program/render.h"
 #include "scenes/procedural.h"
+#include "sim/cpu_time.h"
 #include "sim/error.h"
-#include "studies/host/cpu_time.h"
 
 namespace {
 
@@ -51,9 +51,9 @@ double best_build(const std::shared_ptr<const accel::TriangleSet>& triangles, un
   double spent = 0.0;
   for (int round = 0; round < 3 || (spent < 1.0 && round < 100); ++round) {
     const auto begin = Clock::now();
-    const double cpu_begin = studies::host::thread_cpu_seconds();
+    const double cpu_begin = sim::thread_cpu_seconds();
     const accel::Octree octree = accel::Octree::build(triangles, options);
-    best = std::min(best, threads == 1 ? studies::host::thread_cpu_seconds() - cpu_begin : since(begin));
+    best = std::min(best, threads == 1 ? sim::thread_cpu_seconds() - cpu_begin : since(begin));
     spent += since(begin);
   }
   return best;
@@ -187,11 +187,11 @@ void lazy(bench::Report& report) {
         accel::LazyOctreeOptions lazy_options;
         lazy_options.tree.threads = 1;
         lazy_options.initial = limits[k];
-        const double begin = studies::host::thread_cpu_seconds();
+        const double begin = sim::thread_cpu_seconds();
         const auto structure = accel::make_lazy_octree(triangles, lazy_options);
-        const double built = studies::host::thread_cpu_seconds() - begin;
+        const double built = sim::thread_cpu_seconds() - begin;
         (void)processors::program::render(scene, *triangles, *structure, options, 1);
-        const double total = studies::host::thread_cpu_seconds() - begin;
+        const double total = sim::thread_cpu_seconds() - begin;
         Result& result = results[k];
         result.build = std::min(result.build, built);
         result.render = std::min(result.render, total - built);
@@ -252,12 +252,12 @@ void update(bench::Report& report) {
       std::uint64_t all_tests = 0;
       std::uint32_t moved = 0;
       for (int round = 0; round < 5; ++round) {
-        double begin = studies::host::thread_cpu_seconds();
+        double begin = sim::thread_cpu_seconds();
         (void)accel::build_octree(after, options, tree.frame());
-        fresh = std::min(fresh, studies::host::thread_cpu_seconds() - begin);
-        begin = studies::host::thread_cpu_seconds();
+        fresh = std::min(fresh, sim::thread_cpu_seconds() - begin);
+        begin = sim::thread_cpu_seconds();
         const accel::OctreeUpdate updated = accel::update_octree(tree, after);
-        partial = std::min(partial, studies::host::thread_cpu_seconds() - begin);
+        partial = std::min(partial, sim::thread_cpu_seconds() - begin);
         tests = 0;
         all_tests = 0;
         moved = updated.moved;

@@ -22,9 +22,9 @@
 #include "accel/triangles.h"
 #include "bench/report.h"
 #include "processors/program/render.h"
+#include "sim/cpu_time.h"
 #include "sim/error.h"
 #include "sim/files.h"
-#include "studies/host/cpu_time.h"
 #include "studies/run/open_frame.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_plan.h"
@@ -98,9 +98,9 @@ double native_render(const studies::keys::FrameConfig& config) {
   options.record = false;
   double least = std::numeric_limits<double>::max();
   for (int i = 0; i < 5; ++i) {
-    const double begin = studies::host::process_cpu_seconds();
+    const double begin = sim::process_cpu_seconds();
     (void)processors::program::render(scene, *triangles, *structure, options, 1);
-    least = std::min(least, studies::host::process_cpu_seconds() - begin);
+    least = std::min(least, sim::process_cpu_seconds() - begin);
   }
   return 1e3 * least;
 }

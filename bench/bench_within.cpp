@@ -18,8 +18,8 @@
 #include "bench/estimates/allowances.h"
 #include "processors/cost/cost_model.h"
 #include "processors/replay/replay.h"
+#include "sim/cpu_time.h"
 #include "studies/estimate/within.h"
-#include "studies/host/cpu_time.h"
 #include "studies/run/prepared_frame.h"
 
 namespace {
@@ -76,7 +76,7 @@ struct Costs {
 void compare(const studies::keys::FrameConfig& frame, const processors::machine::MachineConfig& machine,
              double tolerance, std::uint64_t seed, Score& score, Costs& costs) {
   const processors::machine::MachineConfig one = processors::machine::one_node_of(machine);
-  double begin = studies::host::process_cpu_seconds();
+  double begin = sim::process_cpu_seconds();
   const studies::run::PreparedFrame whole(frame);
   const studies::run::FunctionalRun run = whole.finish(whole.trace());
   studies::estimate::Estimate truth;
@@ -86,9 +86,9 @@ void compare(const studies::keys::FrameConfig& frame, const processors::machine:
           ? truth.value[Figure::end]
           : studies::estimate::figures_of(one, processors::replay::replay(*run.frame.log, one))[Figure::end];
   truth.value[Figure::speed_up] = alone / truth.value[Figure::end];
-  const double exact = studies::host::process_cpu_seconds() - begin;
+  const double exact = sim::process_cpu_seconds() - begin;
 
-  begin = studies::host::process_cpu_seconds();
+  begin = sim::process_cpu_seconds();
   const studies::run::PreparedFrame prepared(frame);
   studies::estimate::SampledFrame sampled = studies::estimate::sampled_frame(prepared);
   const processors::machine::PacketList packets(frame.render.width, frame.render.height, machine.packets);
@@ -101,7 +101,7 @@ void compare(const studies::keys::FrameConfig& frame, const processors::machine:
       (void)processors::replay::replay(*filled.frame.log, one);
     }
   }
-  const double within = studies::host::process_cpu_seconds() - begin;
+  const double within = sim::process_cpu_seconds() - begin;
   costs.within += within;
   costs.exact += exact;
   costs.worst = std::max(costs.worst, within / exact);

@@ -94,7 +94,7 @@ class Banks {
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const std::vector<BankStatistics>& statistics() const { return statistics_; }
-  /// Of each channel of a DRAM memory, for a frame that ends at `end`; empty if it is none.
+  /// Statistics of each DRAM channel, for a frame that ends at `end`; empty for a memory of fixed banks.
   [[nodiscard]] std::vector<DramStatistics> dram_statistics(sim::Ticks end) const;
   /// The cache before the banks; null without one.
   [[nodiscard]] SharedCache* cache() { return cache_ ? &*cache_ : nullptr; }

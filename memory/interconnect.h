@@ -133,7 +133,7 @@ class Interconnect {
   [[nodiscard]] virtual const InterconnectStatistics& statistics() const = 0;
   /// Statistics of the banks; empty where no banks are modelled.
   [[nodiscard]] virtual std::vector<BankStatistics> bank_statistics() const = 0;
-  /// Statistics of each channel of a DRAM memory, for a frame that ends at `end`; empty where there is none.
+  /// Statistics of each DRAM channel, for a frame that ends at `end`; empty without DRAM.
   [[nodiscard]] virtual std::vector<DramStatistics> dram_statistics(sim::Ticks /*end*/) const { return {}; }
   /// The destinations of accesses to a distributed memory; null for all others.
   [[nodiscard]] virtual const DistributedStatistics* distribution() const { return nullptr; }

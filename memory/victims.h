@@ -10,7 +10,7 @@
 //   static std::uint64_t bytes_a_set(std::uint64_t ways);  of the host's memory
 //   static constexpr bool counts_repeats              whether it matters that a line is looked up twice in a
 //   row
-// Lines that are removed leave the state as it is, and empty ways are filled first.
+// To remove a line from a cache changes nothing of this. Empty ways are filled before a victim is asked for.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,10 @@
-// A file descriptor that is closed when its owner is destroyed.
+// A file descriptor that is closed when its owner is destroyed, and writing to one.
 #pragma once
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <string_view>
 #include <utility>
 
 namespace marti::sim {
@@ -30,5 +32,17 @@ class Descriptor {
  private:
   int number_;
 };
+
+/// Writes all of `content`. Returns 0, or the errno of the write that failed.
+[[nodiscard]] inline int write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno != EINTR) {
+      return errno;
+    }
+    content.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+  }
+  return 0;
+}
 
 }  // namespace marti::sim

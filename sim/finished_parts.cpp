@@ -100,12 +100,8 @@ void FinishedParts::keep(const std::string& name, const std::string& bytes) {
 }
 
 void FinishedParts::write(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(open_.get(), bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) {
-      fail(file_, std::string("cannot be written: ") + std::strerror(errno));
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(0, written)));
+  if (const int error = write_all(open_.get(), bytes); error != 0) {
+    fail(file_, std::string("cannot be written: ") + std::strerror(error));
   }
 }
 

@@ -1,5 +1,5 @@
-// Parts of a long piece of work that are done, kept in a file until all are: work that was ended, by
-// whatever, finds them again when it begins anew.
+// Parts of a long piece of work that are done, kept in a file until all are: work that was ended in the
+// middle finds them again when it begins anew.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@
 
 namespace marti::sim {
 
-/// Thread-safe. What it returns are bytes that were given to it, so whoever reads them must be the program
-/// that wrote them.
+/// Thread-safe. A part is bytes as the program has them in memory, so only the program that has written it
+/// can read it.
 class FinishedParts {
  public:
   /// Takes up what `file` keeps of the same `work`, a text that tells all that decides the parts: the

@@ -109,19 +109,6 @@ void remove_leftovers(const fs::path& target) {
   }
 }
 
-void write_all(const fs::path& file, int descriptor, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0) {
-      if (errno == EINTR) {
-        continue;
-      }
-      fail(file, errno);
-    }
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
 }  // namespace
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
@@ -202,7 +189,9 @@ Descriptor PendingFile::open() const {
 
 void PendingFile::write(std::string_view content, Durability durability) {
   Descriptor output = open();
-  write_all(target_, output.get(), content);
+  if (const int error = write_all(output.get(), content); error != 0) {
+    fail(target_, error);
+  }
   if (durability == Durability::synced && ::fsync(output.get()) != 0) {
     fail(target_, errno);
   }

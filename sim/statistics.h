@@ -158,6 +158,13 @@ class Sums {
       visit(table[i], values_[i]);
     }
   }
+  /// Of the counter of this name, which there must be.
+  [[nodiscard]] Sum named(std::string_view name) const {
+    std::optional<Sum> found;
+    for_each([&](const Counter<S>& counter, Sum value) { found = counter.name == name ? value : found; });
+    ensure(found.has_value(), "there is no such counter");
+    return *found;
+  }
 
  private:
   std::array<Sum, S::counters().size()> values_{};

@@ -6,11 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <ctime>
 #include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "sim/cpu_time.h"
 
 namespace marti::sim {
 
@@ -122,7 +123,7 @@ class WorkMeter {
   /// Since the meter was made.
   [[nodiscard]] Duration passed() const {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - made_;
-    return {seconds.count(), static_cast<double>(std::clock() - processor_made_) / CLOCKS_PER_SEC};
+    return {seconds.count(), process_cpu_seconds() - processor_made_};
   }
 
   void add_whole(State& now) const {
@@ -156,7 +157,7 @@ class WorkMeter {
   std::vector<Kind> kinds_;
   Duration last_;  // when the last part was finished
   std::chrono::steady_clock::time_point made_ = std::chrono::steady_clock::now();
-  std::clock_t processor_made_ = std::clock();
+  double processor_made_ = process_cpu_seconds();
   FinishedParts* parts_ = nullptr;
   std::atomic<std::uint64_t> done_ = 0;
   std::atomic<bool> stopped_ = false;

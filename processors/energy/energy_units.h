@@ -29,7 +29,7 @@ struct CacheUnits {
 /// Energies in aJ (1e-18 J, a millionth of a pJ) at the machine's voltage, areas in um2, leakage in pW a um2.
 struct EnergyUnits {
   machine::OperationCycles operations;       ///< aJ where the cost model has cycles
-  machine::OperationCycles unit_operations;  ///< the same of a ray-tracing unit
+  machine::OperationCycles unit_operations;  ///< aJ likewise, of the tests that a ray-tracing unit makes
   CacheUnits unit_rays;                      ///< of what holds its rays
   std::array<CacheUnits, machine::split_caches> l1;
   CacheUnits l2;

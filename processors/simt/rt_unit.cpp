@@ -306,10 +306,7 @@ void SimtNode::put_prefetches() {
   for (const Wish& wish : wishes_) {
     for (std::uint32_t i = wish.first; i < wish.end; ++i) {
       const Record record = shared_.walk.first_record(wished_[i]);
-      (void)walk::each_line_of(
-          1, static_cast<std::uint32_t>(record.bytes), shared_.unit_shift,
-          [&](std::uint32_t /*number*/) { return std::optional(record.at); },
-          [&](std::uint32_t line) { return put(record.kind, line); });
+      shared_.each_unit(record.at, record.bytes, [&](std::uint32_t unit) { (void)put(record.kind, unit); });
     }
     if (wish.treelet != no_treelet) {
       const auto kind = memory::RecordKind::node;

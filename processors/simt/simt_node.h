@@ -45,6 +45,15 @@ struct SimtShared {
   RoundCounts round_cycles{};
   unsigned unit_shift = 0;  ///< from addresses to lines
 
+  /// Calls use(unit) for each line, or sector, that holds some of the bytes, in the order of addresses.
+  template <class Use>
+  void each_unit(memory::Address at, std::uint64_t bytes, const Use& use) const {
+    const memory::Address last = (at + bytes - 1) >> unit_shift;
+    for (memory::Address unit = at >> unit_shift; unit <= last; ++unit) {
+      use(static_cast<std::uint32_t>(unit));
+    }
+  }
+
   /// The first cycle that begins at or after `time`.
   [[nodiscard]] std::int64_t cycle_at(sim::Ticks time) const {
     const sim::Ticks period = input.config.clock.period();
@@ -110,15 +119,14 @@ class SimtNode {
   // Waiters of lines: accesses, and warps for their phases.
   static constexpr std::uint32_t phase_bit = 1U << 31U;
 
-  Lane& lane(std::uint32_t warp, std::uint32_t number) {
-    return lanes_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
+  // Where lists of all lanes have a warp's lane.
+  [[nodiscard]] std::size_t place_of(std::uint32_t warp, std::uint32_t number) const {
+    return std::size_t{warp} * shared_.input.config.simt.lanes + number;
   }
-
-  LaneStack& stack(std::uint32_t warp, std::uint32_t number) {
-    return stacks_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
-  }
+  Lane& lane(std::uint32_t warp, std::uint32_t number) { return lanes_[place_of(warp, number)]; }
+  LaneStack& stack(std::uint32_t warp, std::uint32_t number) { return stacks_[place_of(warp, number)]; }
   std::uint32_t& lane_treelet(std::uint32_t warp, std::uint32_t number) {
-    return lane_treelets_[std::size_t{warp} * shared_.input.config.simt.lanes + number];
+    return lane_treelets_[place_of(warp, number)];
   }
 
   void set_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
@@ -128,7 +136,6 @@ class SimtNode {
   void begin_turn(std::uint32_t warp);
   void begin_shading(std::uint32_t warp, Lanes members);
   void begin_trace(std::uint32_t warp);
-  void begin_round(std::uint32_t warp, Lanes lanes);
   bool next_round_records(std::uint32_t warp, Lanes lanes);
   void begin_phase(std::uint32_t warp, Does does);
   void ask_for_slot(std::uint32_t warp);

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "processors/simt/simt_node.h"
+#include "processors/walk/observer.h"
 
 namespace marti::processors::simt {
 
@@ -12,6 +13,12 @@ Lanes lowest(std::uint32_t lanes) { return lanes == 64 ? ~Lanes{0} : (Lanes{1} <
 
 std::uint32_t pixels_of(const machine::Packet& packet) {
   return (packet.x1 - packet.x0) * (packet.y1 - packet.y0);
+}
+
+// A packet's pixel by its number, row by row.
+walk::PixelPlace pixel_of(const machine::Packet& packet, std::uint32_t number) {
+  const std::uint32_t columns = packet.x1 - packet.x0;
+  return {packet.x0 + number % columns, packet.y0 + number / columns};
 }
 
 RoundCounts round_counts(const cost::StepCounts& steps) {
@@ -57,16 +64,13 @@ void SimtNode::begin_turn(std::uint32_t number) {
   const std::uint32_t lanes = shared_.input.config.simt.lanes;
   const std::uint32_t first = warp.turn * lanes;
   const std::uint32_t with_pixel = std::min(lanes, pixels_of(warp.packet) - first);
-  const std::uint32_t columns = warp.packet.x1 - warp.packet.x0;
   warp.pixels = lowest(with_pixel);
   warp.rays = 0;
   for (std::uint32_t i = 0; i < with_pixel; ++i) {
-    const std::uint32_t pixel = first + i;
-    const std::uint32_t x = warp.packet.x0 + pixel % columns;
-    const std::uint32_t y = warp.packet.y0 + pixel / columns;
-    shared_.walk.begin_pixel(lane(number, i), x, y);
+    const walk::PixelPlace pixel = pixel_of(warp.packet, first + i);
+    shared_.walk.begin_pixel(lane(number, i), pixel.x, pixel.y);
     if (!stacks_.empty()) {
-      stack(number, i).begin_pixel(shared_.input.log.entered(x, y));
+      stack(number, i).begin_pixel(shared_.input.log.entered(pixel.x, pixel.y));
     }
   }
   time_.add_lanes(LaneState::held, with_pixel);
@@ -84,14 +88,12 @@ void SimtNode::begin_shading(std::uint32_t number, Lanes members) {
   for_each_lane(members, [&](std::uint32_t member) {
     ShaderCounts counts{};
     const auto read = [&](memory::RecordKind kind, memory::Address at, std::uint32_t bytes) {
-      const memory::Address last = (at + bytes - 1) >> shared_.unit_shift;
-      for (memory::Address unit = at >> shared_.unit_shift; unit <= last; ++unit) {
-        const auto line = static_cast<std::uint32_t>(unit);
+      shared_.each_unit(at, bytes, [&](std::uint32_t unit) {
         if (std::none_of(warp.lines.rbegin(), warp.lines.rend(),
-                         [&](const LineRead& other) { return other.unit == line; })) {
-          warp.lines.push_back({line, kind, lane(number, member).origin});
+                         [&](const LineRead& other) { return other.unit == unit; })) {
+          warp.lines.push_back({unit, kind, lane(number, member).origin});
         }
-      }
+      });
     };
     const bool holds = shared_.walk.shade(lane(number, member), counts, read);
     (holds ? warp.rays : warp.ended) |= Lanes{1} << member;
@@ -222,12 +224,11 @@ void SimtNode::end_shading(std::uint32_t number) {
   const memory::Layout& layout = shared_.input.layout;
   const std::uint32_t bytes = layout.record_bytes(memory::RecordKind::pixel);
   const std::uint32_t line = shared_.input.config.cache.cache.line;
-  const std::uint32_t columns = warp.packet.x1 - warp.packet.x0;
   for_each_lane(warp.ended, [&](std::uint32_t member) {
-    const std::uint32_t k = warp.turn * shared_.input.config.simt.lanes + member;
-    const std::uint64_t pixel =
-        std::uint64_t{warp.packet.y0 + k / columns} * shared_.input.log.width + warp.packet.x0 + k % columns;
-    const memory::Address at = layout.address(memory::RecordKind::pixel, pixel);
+    const walk::PixelPlace pixel =
+        pixel_of(warp.packet, warp.turn * shared_.input.config.simt.lanes + member);
+    const memory::Address at =
+        layout.address(memory::RecordKind::pixel, std::uint64_t{pixel.y} * shared_.input.log.width + pixel.x);
     if (!warp.writes.empty()) {
       PixelWrite& last = warp.writes.back();
       if (last.at + last.bytes == at && (at + bytes - 1) / line == last.at / line) {
@@ -357,10 +358,9 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
   });
   warp.lines.clear();
   for (const RoundAccess& access : accesses) {
-    const memory::Address last = (access.record.at + access.record.bytes - 1) >> shared_.unit_shift;
-    for (memory::Address unit = access.record.at >> shared_.unit_shift; unit <= last; ++unit) {
-      warp.lines.push_back({static_cast<std::uint32_t>(unit), access.record.kind, access.origin});
-    }
+    shared_.each_unit(access.record.at, access.record.bytes, [&](std::uint32_t unit) {
+      warp.lines.push_back({unit, access.record.kind, access.origin});
+    });
   }
   time_.counts().accesses += static_cast<std::int64_t>(accesses.size());
   warp.compute = {};

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t most_named = 6;
 constexpr std::size_t most_activities = 3;
 
-// A figure of two results as it differs, or as it is equal.
+// A figure with its values in A and B, whether they differ or not; null where neither has it.
 const FigureDifference* figure(const Comparison& found, std::string_view name) {
   for (const std::vector<FigureDifference>* figures : {&found.figures, &found.equal}) {
     const auto at = std::ranges::find(*figures, name, &FigureDifference::name);

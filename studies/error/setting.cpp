@@ -6,10 +6,10 @@
 #include <numeric>
 #include <string>
 
+#include "sim/cpu_time.h"
 #include "sim/error.h"
 #include "sim/finished_parts.h"
 #include "studies/estimate/regression_estimate.h"
-#include "studies/host/cpu_time.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/voxel_report.h"
 
@@ -67,9 +67,9 @@ void measure(std::vector<Setting>& settings, std::uint32_t repeats, sim::WorkMet
       Answer answer;
       double seconds = 0.0;
       const auto run = [&] {
-        const double before = host::process_cpu_seconds();
+        const double before = sim::process_cpu_seconds();
         answer = setting.run(repeat);
-        seconds = host::process_cpu_seconds() - before;
+        seconds = sim::process_cpu_seconds() - before;
         if (reference) {
           // Two references with equal errors that know nothing of each other.
           setting.noise = error_of(setting.run(1), answer) / std::sqrt(2.0);

@@ -99,13 +99,7 @@ void add_nodes(FigureParts& parts, const MachineResult& r, const MachineTotals& 
 // What is left of the frame time of all links; 0 without links.
 template <class S>
 sim::Sum idle_of(sim::Ticks end, const std::optional<sim::Sums<S>>& links) {
-  sim::Sum idle = 0;
-  if (links) {
-    links->for_each([&](const auto& counter, sim::Sum value) {
-      idle += counter.name == "links" ? sim::Sum{end} * value : counter.name == "busy" ? -value : sim::Sum{0};
-    });
-  }
-  return idle;
+  return links ? sim::Sum{end} * links->named("links") - links->named("busy") : sim::Sum{0};
 }
 
 void add_memory(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,

@@ -29,6 +29,19 @@ Formula all_rays() {
   return sum;
 }
 
+// Adds figures to a list.
+class Ratios {
+ public:
+  explicit Ratios(std::vector<FigureEntry>& all) : all_(all) {}
+  void operator()(std::string_view name, std::string_view unit, std::string_view text, Better better,
+                  const Formula& formula) const {
+    all_.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
+  }
+
+ private:
+  std::vector<FigureEntry>& all_;
+};
+
 // Which part of the lost speed-up an activity belongs to: its place in loss_names.
 std::size_t loss_of(processors::cost::Activity activity) {
   using processors::cost::Activity;
@@ -99,10 +112,9 @@ void add_speed(std::vector<FigureEntry>& all) {
 
 // The steps of the work log, as its totals count them.
 Formula all_steps() {
-  Formula sum = own("steps_camera_rays");
+  Formula sum = all_rays();
   for (const std::string_view step :
-       {"shadow_rays", "reflection_rays", "refraction_rays", "diffuse_rays", "branches", "leaves", "tests",
-        "shades", "lights", "texels", "cuts", "passes"}) {
+       {"branches", "leaves", "tests", "shades", "lights", "texels", "cuts", "passes"}) {
     sum = sum + own("steps_" + std::string(step));
   }
   return sum;
@@ -111,10 +123,9 @@ Formula all_steps() {
 // What the time of links and data buses is spent on, each as a share of the whole. Data take whole beats, of
 // which bytes may fill a part only.
 void add_shares(std::vector<FigureEntry>& all) {
-  const auto add = [&all](std::string_view name, std::string_view text, Better better, const Formula& part,
-                          const Formula& whole) {
-    all.push_back({std::string(name), "fraction", std::string(text), Merge::ratio, better, part / whole});
-  };
+  const Ratios add_ratio(all);
+  const auto add = [&](std::string_view name, std::string_view text, Better better, const Formula& part,
+                       const Formula& whole) { add_ratio(name, "fraction", text, better, part / whole); };
   const Formula links = own("interconnect_busy") + own("interconnect_no_request");
   add("interconnect_share_data", "share of the links' time in which they move data, in whole beats",
       Better::higher, own("interconnect_data"), links);
@@ -146,10 +157,7 @@ void add_shares(std::vector<FigureEntry>& all) {
 }
 
 void add_memory(std::vector<FigureEntry>& all) {
-  const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
-                          const Formula& formula) {
-    all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
-  };
+  const Ratios add(all);
   const auto hit_ratio = [&](const std::string& name, const std::string& of, std::string_view text) {
     add(name, "fraction", text, Better::higher, own(of + "hits") / (own(of + "hits") + own(of + "misses")));
   };
@@ -254,10 +262,7 @@ void add_memory(std::vector<FigureEntry>& all) {
 }
 
 void add_rays(std::vector<FigureEntry>& all) {
-  const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
-                          const Formula& formula) {
-    all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
-  };
+  const Ratios add(all);
   const auto a_second = [](const Formula& rays) { return rays * Formula(1e12) / own("end"); };
   add("rays_a_second", "1/s", "rays of all kinds traced in a second", Better::higher, a_second(all_rays()));
   for (const std::string_view kind : ray_figures) {
@@ -272,10 +277,7 @@ void add_rays(std::vector<FigureEntry>& all) {
 
 // Units: 1 mJ is 1e12 fJ, 1 s is 1e12 ps, hence 1 W is 1e3 fJ a ps.
 void add_energy(std::vector<FigureEntry>& all) {
-  const auto add = [&all](std::string_view name, std::string_view unit, std::string_view text, Better better,
-                          const Formula& formula) {
-    all.push_back({std::string(name), std::string(unit), std::string(text), Merge::ratio, better, formula});
-  };
+  const Ratios add(all);
   const Formula total = own("energy_total");
   const Formula energy = total / Formula(1e12);
   const Formula rays = all_rays();

@@ -49,7 +49,8 @@ class FrameWays {
   /// The next frame. `update` is that from the frame before to this one, null for the first. The four are
   /// simulated at the same time; the results do not depend on how many host threads there are.
   [[nodiscard]] WayOutcomes time(const processors::program::WorkLog& log, const accel::OctreeUpdate* update);
-  /// What the next frame takes over from the last one: for whoever keeps frames that are finished.
+  /// What the next frame takes over from the last one. A study that keeps finished frames saves it with each
+  /// and puts it back.
   [[nodiscard]] std::vector<std::uint8_t>& built() { return built_; }
 
  private:

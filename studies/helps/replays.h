@@ -37,9 +37,10 @@ struct Replayed {
   Work work = 0;
 };
 
-/// Replays each machine, none of which takes more than `most_bytes`, with the ReplayOptions::packet_seed of
-/// its place in `packet_seeds`; without these, as it is. As many are replayed at a time as there
-/// are cores and memory for; results do not depend on it. Throws sim::Stopped.
+/// Replays each machine, none of which takes more than `most_bytes`. `packet_seeds`: the
+/// ReplayOptions::packet_seed of each machine; empty: 0 for all, the order of packets that it asks for. As
+/// many are replayed at a time as there are cores and memory for; results do not depend on it. Throws
+/// sim::Stopped.
 [[nodiscard]] std::vector<Replayed> replay_all(
     const SharedLog& shared, std::span<const processors::machine::MachineConfig* const> machines,
     std::uint64_t most_bytes, std::span<const std::uint64_t> packet_seeds = {});

@@ -169,8 +169,8 @@ double nodes_share(const std::string& name, const figures::FlowFigures& flow) {
 }
 
 // How much of a SIMT node's waits more of this can fill, from 0 to 1: warps in the unit where others queue
-// for it, warps of the node where none do, registers where look-ups find none. std::nullopt: it is none of
-// these.
+// for it, warps of the node where none do, registers where look-ups find none. std::nullopt: `name` is no
+// such setting.
 std::optional<double> filled_waits(std::string_view name, const figures::Counts& counts) {
   const auto lanes = [&](std::string_view state) {
     return static_cast<double>(figures::count_of(counts, "simt_lanes_" + std::string(state)).value_or(0));

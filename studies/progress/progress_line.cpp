@@ -8,7 +8,7 @@
 #include <chrono>
 #include <utility>
 
-#include "studies/host/cpu_time.h"
+#include "sim/cpu_time.h"
 #include "studies/tables/text_units.h"
 
 namespace marti::studies::progress {
@@ -79,7 +79,7 @@ ShownMeter::ShownMeter(const sim::WorkMeter& meter) {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
       const sim::WorkMeter::State state = meter.state();
       return meter_text(state, passed.count(),
-                        pace.left(state, {passed.count(), host::process_cpu_seconds()}));
+                        pace.left(state, {passed.count(), sim::process_cpu_seconds()}));
     };
     line_.emplace(ProgressLine::Options(), text);
     at_signal_.emplace([this](int /*signal*/) { line_->end(); }, host::AtSignal::Then::signal);

@@ -32,6 +32,23 @@ namespace marti::studies::tables {
   return number ? Cell(*number) : Cell();
 }
 
+/// The type that a column of so many cells needs, cell_of(i) being each: text if any is one, else integer if
+/// all values are, else real.
+template <class CellOf>
+[[nodiscard]] ColumnType common_type(std::size_t cells, const CellOf& cell_of) {
+  bool integer = false;
+  bool real = false;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const Cell& cell = cell_of(i);
+    if (std::holds_alternative<std::string>(cell)) {
+      return ColumnType::text;
+    }
+    integer = integer || std::holds_alternative<std::int64_t>(cell);
+    real = real || std::holds_alternative<double>(cell);
+  }
+  return integer && !real ? ColumnType::integer : ColumnType::real;
+}
+
 /// The cell as a text has it: of a boolean "true" or "false".
 [[nodiscard]] inline Cell in_words(const Cell& cell, ColumnType type) {
   const auto* flag = std::get_if<std::int64_t>(&cell);

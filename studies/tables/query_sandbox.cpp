@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -185,8 +184,7 @@ std::string refusal_of(sqlite3* database, const std::string& sql) {
 
 QuerySandbox::QuerySandbox(std::string table, const std::vector<std::string>& columns)
     : database_(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_MEMORY | SQLite::OPEN_NOMUTEX),
-      table_(std::move(table)),
-      insert_(insert_sql(sql_name(table_), columns.size())) {
+      table_(std::move(table)) {
   std::string sql;
   for (const std::string& column : columns) {
     sql += (sql.empty() ? "" : ", ") + sql_name(column);
@@ -201,24 +199,13 @@ QuerySandbox::QuerySandbox(std::string table, const std::vector<std::string>& co
   sqlite3_limit(handle, SQLITE_LIMIT_LIKE_PATTERN_LENGTH, longest_query_pattern);
   sqlite3_limit(handle, SQLITE_LIMIT_EXPR_DEPTH, deepest_query);
   database_.createFunction("shown", 2, true, nullptr, shown);
+  insert_.emplace(database_, insert_sql(sql_name(table_), columns.size()));
 }
 
 void QuerySandbox::add_row(std::span<const Cell> cells) {
-  SQLite::Statement statement(database_, insert_);
-  int index = 0;
-  for (const Cell& cell : cells) {
-    ++index;
-    std::visit(
-        [&](const auto& value) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) {
-            statement.bind(index);
-          } else {
-            statement.bind(index, value);
-          }
-        },
-        static_cast<const CellValue&>(cell));
-  }
-  (void)statement.exec();
+  bind_cells(*insert_, cells);
+  (void)insert_->exec();
+  insert_->reset();
 }
 
 QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const std::string& place,

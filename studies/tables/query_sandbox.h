@@ -3,8 +3,10 @@
 #pragma once
 
 #include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -39,7 +41,7 @@ class QuerySandbox {
  private:
   SQLite::Database database_;
   std::string table_;
-  std::string insert_;
+  std::optional<SQLite::Statement> insert_;  // a row into the table
 };
 
 }  // namespace marti::studies::tables

@@ -95,19 +95,7 @@ SqliteStatement::SqliteStatement(SqliteConnection& connection, const std::string
 SqliteStatement& SqliteStatement::with(const std::vector<Cell>& parameters) {
   connection_.checked([&] {
     (void)statement_.tryReset();  // gives once more the error that its last run has thrown
-    int index = 0;
-    for (const Cell& cell : parameters) {
-      ++index;
-      if (std::holds_alternative<std::monostate>(cell)) {
-        statement_.bind(index);
-      } else if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
-        statement_.bind(index, *integer);
-      } else if (const auto* real = std::get_if<double>(&cell)) {
-        statement_.bind(index, *real);
-      } else {
-        statement_.bind(index, std::get<std::string>(cell));
-      }
-    }
+    bind_cells(statement_, parameters);
   });
   return *this;
 }
@@ -165,6 +153,22 @@ void SqliteStatement::refuse(int column, ColumnType wanted) const {
   throw sim::UserError(connection_.name_ + ": its column " + column_name(column) +
                        " holds a value that is no " + std::string(sql_type(wanted)) +
                        "; the file was damaged or changed: take a copy that is whole, or remove it");
+}
+
+void bind_cells(SQLite::Statement& statement, std::span<const Cell> cells) {
+  int index = 0;
+  for (const Cell& cell : cells) {
+    ++index;
+    if (std::holds_alternative<std::monostate>(cell)) {
+      statement.bind(index);
+    } else if (const auto* integer = std::get_if<std::int64_t>(&cell)) {
+      statement.bind(index, *integer);
+    } else if (const auto* real = std::get_if<double>(&cell)) {
+      statement.bind(index, *real);
+    } else {
+      statement.bind(index, std::get<std::string>(cell));
+    }
+  }
 }
 
 bool has_log_or_journal(const std::filesystem::path& database) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -123,6 +124,9 @@ void SqliteConnection::transact(const Change& change) {
     transaction.commit();
   });
 }
+
+/// Gives the statement's parameters these values, from the first on.
+void bind_cells(SQLite::Statement& statement, std::span<const Cell> cells);
 
 /// Whether a log or a journal that is not empty lies beside the file: it may hold what the file lacks.
 [[nodiscard]] bool has_log_or_journal(const std::filesystem::path& database);

@@ -11,12 +11,6 @@ namespace marti::studies::tables {
 
 namespace {
 
-bool is_plain(std::string_view name, bool key = false) {
-  return !name.empty() && std::ranges::all_of(name, [key](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || (key && c == '.');
-  });
-}
-
 // A sum that does not fit in 64 bits.
 bool is_large_sum(const Cell& cell) {
   const auto* real = std::get_if<double>(&cell);
@@ -43,6 +37,12 @@ bool fits(const Cell& cell, ColumnType type) {
 }
 
 }  // namespace
+
+bool is_plain_name(std::string_view name, bool dots) {
+  return !name.empty() && std::ranges::all_of(name, [dots](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || (dots && c == '.');
+  });
+}
 
 Column text_column(std::string_view name, std::string_view description) {
   return {std::string(name), ColumnType::text, "", std::string(description)};
@@ -92,9 +92,9 @@ Cell::~Cell() = default;
 
 Table::Table(std::string name, std::string title, std::vector<Column> columns)
     : name_(std::move(name)), title_(std::move(title)), columns_(std::move(columns)) {
-  sim::ensure(is_plain(name_) && !columns_.empty(), "a table needs a plain name and a column");
+  sim::ensure(is_plain_name(name_) && !columns_.empty(), "a table needs a plain name and a column");
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    sim::ensure(is_plain(columns_[i].name, true), "the name of a table's column is not plain");
+    sim::ensure(is_plain_name(columns_[i].name, true), "the name of a table's column is not plain");
     for (std::size_t j = 0; j < i; ++j) {
       sim::ensure(columns_[i].name != columns_[j].name, "two columns of a table have one name");
     }

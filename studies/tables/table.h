@@ -31,6 +31,10 @@ struct Column {
   std::string description;  ///< for people, without the full stop
 };
 
+/// Whether it may name a table or, with `dots`, a column: lower-case letters, digits, '_', and '.' as in a
+/// key.
+[[nodiscard]] bool is_plain_name(std::string_view name, bool dots = false);
+
 [[nodiscard]] Column text_column(std::string_view name, std::string_view description);
 /// Of unit "1".
 [[nodiscard]] Column count_column(std::string_view name, std::string_view description);

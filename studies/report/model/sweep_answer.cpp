@@ -176,7 +176,8 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
       }
     }
     answer.push_back(
-        "Noise: " + sweep::noise_text(*fastest.noise, sweep::within_noise(times, *fastest.noise)) + ".");
+        "Noise: " + sweep::fastest_noise_text(*fastest.noise, sweep::within_noise(times, *fastest.noise)) +
+        ".");
   }
   add_advice("What would help it, measured", fastest);
   if (chosen.knee != chosen.fastest) {

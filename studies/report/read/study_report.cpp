@@ -63,11 +63,6 @@ tables::ColumnType type_of(const std::string& declared) {
                                : tables::ColumnType::text;
 }
 
-bool is_plain(const std::string& name) {
-  return !name.empty() &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-}
-
 tables::Table read_table(tables::SqliteConnection& connection, const fs::path& file, const std::string& name,
                          const Descriptions& descriptions, std::size_t& rows_left) {
   std::vector<tables::Column> columns;
@@ -76,7 +71,7 @@ tables::Table read_table(tables::SqliteConnection& connection, const fs::path& f
   info.with({name});
   while (info.next()) {
     tables::Column column{info.text(0), type_of(info.text(1)), "", ""};
-    if (!is_plain(column.name) || !seen.insert(column.name).second) {
+    if (!tables::is_plain_name(column.name) || !seen.insert(column.name).second) {
       throw sim::UserError(file.string() + ": table " + name + ": its columns are not those of a study" +
                            std::string(remedy));
     }
@@ -86,7 +81,7 @@ tables::Table read_table(tables::SqliteConnection& connection, const fs::path& f
     }
     columns.push_back(column);
   }
-  if (columns.empty() || !is_plain(name)) {
+  if (columns.empty() || !tables::is_plain_name(name)) {
     throw sim::UserError(file.string() + ": table " + name + " is not one of a study" + std::string(remedy));
   }
   tables::Table table(name, name, columns);

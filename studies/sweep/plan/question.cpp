@@ -7,6 +7,7 @@
 
 #include "sim/config_errors.h"
 #include "sim/nearest.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies::sweep {
 
@@ -78,7 +79,7 @@ class QuestionReader {
 
     [[nodiscard]] std::string plain_name(std::string_view key) const {
       std::string text = line(key);
-      if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos) {
+      if (!tables::is_plain_name(text)) {
         reader_.fail(given(key).line, name(key), "must be of lower-case letters, digits and '_'");
       }
       return text;

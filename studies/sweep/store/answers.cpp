@@ -49,19 +49,6 @@ void for_each_query(const Question& question, const Use& use) {
   }
 }
 
-tables::ColumnType type_of(const tables::QuerySandbox::Rows& found, std::size_t column) {
-  bool real = false;
-  bool number = false;
-  for (const std::vector<tables::Cell>& row : found.rows) {
-    if (std::holds_alternative<std::string>(row[column])) {
-      return tables::ColumnType::text;
-    }
-    real = real || std::holds_alternative<double>(row[column]);
-    number = number || tables::number_of(row[column]).has_value();
-  }
-  return number && !real ? tables::ColumnType::integer : tables::ColumnType::real;
-}
-
 // A cell in a column of that type: of numbers and texts in one column all are texts.
 tables::Cell as_column(const tables::Cell& cell, tables::ColumnType type) {
   return type == tables::ColumnType::text && tables::number_of(cell)
@@ -74,15 +61,15 @@ tables::Table table_of(const QuestionTable& wanted, const tables::QuerySandbox::
   std::set<std::string> seen;
   for (std::size_t i = 0; i < found.names.size(); ++i) {
     const std::string& name = found.names[i];
-    if (name.empty() || !seen.insert(name).second ||
-        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") != std::string::npos) {
+    if (!tables::is_plain_name(name, true) || !seen.insert(name).second) {
       throw sim::UserError(wanted.rows.place +
                            ": each column needs a name of its own, of lower-case letters, digits, '_' and "
                            "'.': AS name (column " +
                            std::to_string(i + 1) + ")");
     }
     columns.push_back(point_column(name));
-    columns.back().type = type_of(found, i);
+    columns.back().type = tables::common_type(
+        found.rows.size(), [&](std::size_t row) -> const tables::Cell& { return found.rows[row][i]; });
     if (columns.back().type == tables::ColumnType::text) {
       columns.back().unit.clear();
     }

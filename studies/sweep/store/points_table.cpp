@@ -37,28 +37,16 @@ std::vector<Row> rows_of(const SweepReader& reader, std::span<const std::string>
   return rows;
 }
 
-// The type of a figure: text, if its first value is one; integer, if all its values are; else real.
-tables::ColumnType type_of(std::span<const Row> rows, std::size_t index) {
-  bool real = false;
-  std::optional<tables::ColumnType> first;
-  for (const Row& row : rows) {
-    const tables::Cell& cell = row.figures[index];
-    real = real || std::holds_alternative<double>(cell);
-    if (!first && !std::holds_alternative<std::monostate>(cell)) {
-      first =
-          std::holds_alternative<std::string>(cell) ? tables::ColumnType::text : tables::ColumnType::integer;
-    }
-  }
-  return first == tables::ColumnType::integer && real ? tables::ColumnType::real
-                                                      : first.value_or(tables::ColumnType::real);
-}
-
 tables::Table table_of(std::string name, std::string title, std::span<const std::string> names,
                        std::vector<Row> rows) {
   std::vector<tables::Column> columns;
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(point_column(names[i]));
-    columns.back().type = is_boolean_axis(names[i]) ? tables::ColumnType::boolean : type_of(rows, i);
+    columns.back().type = is_boolean_axis(names[i])
+                              ? tables::ColumnType::boolean
+                              : tables::common_type(rows.size(), [&](std::size_t row) -> const tables::Cell& {
+                                  return rows[row].figures[i];
+                                });
     if (columns.back().type == tables::ColumnType::text) {
       columns.back().unit.clear();  // its text holds the unit
     }
@@ -130,7 +118,7 @@ std::size_t within_noise(std::span<const double> times, double noise) {
          1;
 }
 
-std::string noise_text(double noise, std::size_t others) {
+std::string fastest_noise_text(double noise, std::size_t others) {
   return fmt::format("another order of packets changes its frame by up to {}, and {} within that",
                      tables::figure_text(noise, "fraction", "-"),
                      others == 0 ? "no other point is"
@@ -169,7 +157,8 @@ std::string fastest_text(const SweepReader& reader) {
     return {};
   }
   if (of_least->noise) {
-    text += "noise         " + noise_text(*of_least->noise, within_noise(times, *of_least->noise)) + "\n";
+    text +=
+        "noise         " + fastest_noise_text(*of_least->noise, within_noise(times, *of_least->noise)) + "\n";
   }
   return text + "what helps    " + of_least->sentence + "\n";
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "studies/host/cpu_time.h"
+#include "sim/cpu_time.h"
 
 namespace marti::studies::sweep {
 
@@ -31,7 +31,7 @@ void Progress::begin(std::size_t machines, std::size_t machines_done, std::size_
     frames_ = frames;
     frames_done_ = frames_done;
     begun_ = told_ = printed_ = Clock::now();
-    processor_begun_ = host::process_cpu_seconds();
+    processor_begun_ = sim::process_cpu_seconds();
   }
   if (options_.terminal && !options_.quiet) {
     line_.emplace(progress::ProgressLine::Options{.out = options_.out, .first = options_.first_bar},
@@ -84,7 +84,7 @@ double Progress::processors() const {
   const std::chrono::duration<double> passed = Clock::now() - begun_;
   return passed.count() < shortest
              ? options_.workers
-             : std::clamp((host::process_cpu_seconds() - processor_begun_) / passed.count(), 0.01,
+             : std::clamp((sim::process_cpu_seconds() - processor_begun_) / passed.count(), 0.01,
                           1.0 * options_.workers);
 }
 

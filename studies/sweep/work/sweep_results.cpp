@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/cpu_time.h"
 #include "sim/error.h"
-#include "studies/host/cpu_time.h"
 
 namespace marti::studies::sweep {
 
 SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress)
-    : store_(store), progress_(progress), plan_(plan), last_(host::process_cpu_seconds()) {
+    : store_(store), progress_(progress), plan_(plan), last_(sim::process_cpu_seconds()) {
   const std::vector<bool> frames = store.frames_done();
   const std::vector<bool> machines = store.done();
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
@@ -25,7 +25,7 @@ SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& p
 
 double SweepResults::taken() {
   const double before = last_;
-  last_ = host::process_cpu_seconds();
+  last_ = sim::process_cpu_seconds();
   return last_ - before;
 }
 

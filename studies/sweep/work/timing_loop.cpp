@@ -16,9 +16,9 @@
 #include "processors/replay/replay.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
+#include "sim/cpu_time.h"
 #include "sim/error.h"
 #include "sim/shown.h"
-#include "studies/host/cpu_time.h"
 #include "studies/sweep/work/batches.h"
 #include "studies/sweep/work/memory_gate.h"
 
@@ -169,7 +169,7 @@ class Loop {
     std::optional<processors::replay::MachineResult> result;
     for (const std::size_t number : group) {
       const SweepMachine& machine = plan_.machines[number];
-      const std::int64_t begin = host::thread_cpu_nanoseconds();
+      const std::int64_t begin = sim::thread_cpu_nanoseconds();
       SweepRow row;
       try {
         row = sim::with_places(all_of(machine.settings), plan_.file, [&] {
@@ -187,7 +187,7 @@ class Loop {
         throw sim::UserError("the computer ran out of memory (while it timed the machine with " +
                              sim::shown(name_of(machine)) + ")");
       }
-      results_.timed(number, row, host::thread_cpu_nanoseconds() - begin);
+      results_.timed(number, row, sim::thread_cpu_nanoseconds() - begin);
     }
   }
 

@@ -53,13 +53,17 @@ TEST(PixelSet, HoldsWhatWasAddedAndNotTakenAway) {
 
 class PartialRender : public testing::TestWithParam<RenderOptions> {};
 
-TEST_P(PartialRender, PartsTogetherAreTheWhole) {
-  const Built built(scenes::make_procedural("teapot:2"), "octree");
-  RenderOptions options = GetParam();
+RenderOptions small_image(RenderOptions options) {
   options.width = 37;
   options.height = 29;
   options.max_depth = 3;
   options.record = true;
+  return options;
+}
+
+TEST_P(PartialRender, PartsTogetherAreTheWhole) {
+  const Built built(scenes::make_procedural("teapot:2"), "octree");
+  const RenderOptions options = small_image(GetParam());
   const Frame whole = built.render(options);
   std::mt19937_64 random(3);
   for (const std::uint64_t parts : {1, 2, 5}) {
@@ -94,11 +98,7 @@ TEST_P(PartialRender, PartsTogetherAreTheWhole) {
 // counted of windows that cover the image adds up to what is counted of it.
 TEST_P(PartialRender, WindowsTogetherAreTheImage) {
   const Built built(scenes::make_procedural("teapot:2"), "octree");
-  RenderOptions options = GetParam();
-  options.width = 37;
-  options.height = 29;
-  options.max_depth = 3;
-  options.record = true;
+  const RenderOptions options = small_image(GetParam());
   const Frame whole = built.render(options);
   const std::array<std::uint32_t, 4> columns = {0, 1, 20, 37};
   const std::array<std::uint32_t, 3> rows = {0, 13, 29};

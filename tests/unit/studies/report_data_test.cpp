@@ -229,7 +229,7 @@ TEST(Noise, IsTheShareWithinWhichOtherPointsAreNotTold) {
   EXPECT_EQ(within_noise(times, 0.0), 1U) << "an equal frame is not told at all";
   EXPECT_EQ(within_noise(times, 0.02), 2U);
   EXPECT_EQ(within_noise(times, 1.0), 3U);
-  EXPECT_EQ(noise_text(0.004, 2),
+  EXPECT_EQ(fastest_noise_text(0.004, 2),
             "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that");
 }
 

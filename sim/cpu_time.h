@@ -6,12 +6,12 @@
 
 #include "sim/error.h"
 
-namespace marti::studies::host {
+namespace marti::sim {
 
 /// Nanoseconds by `clock`. Throws InternalError where there is no such clock.
 [[nodiscard]] inline std::int64_t clock_nanoseconds(clockid_t clock) {
   timespec now{};
-  sim::ensure(clock_gettime(clock, &now) == 0, "there is no clock of processor time");
+  ensure(clock_gettime(clock, &now) == 0, "there is no clock of processor time");
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
@@ -30,4 +30,4 @@ namespace marti::studies::host {
   return 1e-9 * static_cast<double>(thread_cpu_nanoseconds());
 }
 
-}  // namespace marti::studies::host
+}  // namespace marti::sim
