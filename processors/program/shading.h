@@ -69,16 +69,56 @@ inline bool shows_light(const scenes::Material& material) {
   return scatters(material) || (material.highlight > 0.0 && !is_black(material.specular_color));
 }
 
+/// Distance from the triangle with corners p within which the kernel may still report a hit of a point on it.
+/// The kernel's t has an error of some 8 roundings of the triangle's own extent, however small the
+/// coordinates are: a triangle in the plane z = 0 has no error in z, yet an oblique ray that starts exactly
+/// there would hit it by rounding. 2^-48 (of doubles) leaves a factor of two.
+template <typename Real>
+Real kernel_margin(const Vec3<Real> (&p)[3]) {
+  return largest(absolute(p[1] - p[0]) + absolute(p[2] - p[0])) * Real(32.0 * rounding<Real>);
+}
+
+/// How far from the edges of its triangle a ray begins, at a point whose coordinates are off by `error`, on a
+/// triangle with this kernel_margin in a scene whose box has the largest side `reach`: 16 times the errors of
+/// the point and of the kernel (2^-48 of the size of the scene, whose larger triangles may be the
+/// neighbours).
+template <typename Real>
+Held<Real> edge_clearance(Held<Real> error, Held<Real> margin, double reach) {
+  using Number = Held<Real>;
+  return Number(16) * (Number(2) * error + margin +
+                       static_cast<Number>(32.0 * rounding<Real>) * static_cast<Number>(reach));
+}
+
+/// Number of edge_clearances that a triangle must be high, so that a ray that begins anywhere on it can keep
+/// off all three edges: the weights are raised to a quarter at most.
+inline constexpr int sure_clearances = 4;
+
+/// The least height of a triangle with corners p, in a scene whose box has the largest side `reach`, from
+/// which on no ray that begins on it leaves a closed convex body whose triangles are all as high and meet at
+/// more than some 8 degrees, nor is a light in the body hidden from it. On lower triangles rounding decides
+/// on which side of the neighbour a ray begins.
+///
+/// Why: weights that are raised to a quarter at most add up to 1.5 at most, so the ray begins two thirds of
+/// edge_clearance from every edge or more. Over the plane of a neighbour it is then higher by sin 8 degrees
+/// of that, 1.48 times the sum in edge_clearance: more than the distance by which the point may be off, the
+/// root of three times the error of a coordinate, and the kernel's error together.
+template <typename Real>
+double sure_height(const Vec3<Real> (&p)[3], double reach) {
+  const Held<Real> size =
+      std::max({largest(held(absolute(p[0]))), largest(held(absolute(p[1]))), largest(held(absolute(p[2])))});
+  const auto error = size * static_cast<Held<Real>>(gamma_bound<Real>(7));
+  return sure_clearances *
+         static_cast<double>(edge_clearance<Real>(error, static_cast<Held<Real>>(kernel_margin(p)), reach));
+}
+
 /// Fills in what rounding may do to a point of a triangle with corners p and weights b: tilt_squared and
 /// inward.
 ///
 /// Two triangles that meet at an edge bound a convex body from inside. A ray that begins at the edge is moved
 /// along one triangle's normal, which keeps it off that triangle, but it may begin behind the other one,
 /// whose plane is as near as the error of the point: it would leave the body, or be hidden from a light
-/// inside. So the ray begins `off` from every edge of its triangle, in the triangle's plane: 16 times the
-/// errors of the point and of the kernel (2^-48 of the size of the scene, whose larger triangles may be the
-/// neighbours). Then it is on the inner side of neighbours that meet the triangle at more than some 8
-/// degrees.
+/// inside. So the ray begins an edge_clearance from every edge of its triangle, in the triangle's plane. Then
+/// it is on the inner side of neighbours that meet the triangle at more than some 8 degrees.
 ///
 /// The arithmetic is not counted among the program's operations: it matters to one ray in thousands.
 template <typename Real>
@@ -105,8 +145,7 @@ void bound_rounding(Surface<Real>& surface, const Vec3<Real> (&p)[3], const Real
   surface.tilt_squared = moved * moved * longest_squared / area_squared;
 
   const Number off =
-      Number(16) * (Number(2) * largest(held(surface.error)) + static_cast<Number>(surface.margin) +
-                    Number(32) * unit * static_cast<Number>(reach));
+      edge_clearance<Real>(largest(held(surface.error)), static_cast<Number>(surface.margin), reach);
   const Number weights[3] = {static_cast<Number>(b[0]), static_cast<Number>(b[1]), static_cast<Number>(b[2])};
   const Number least = std::min({weights[0], weights[1], weights[2]});
   if (least * least * area_squared >= off * off * longest_squared) [[likely]] {
@@ -114,7 +153,8 @@ void bound_rounding(Surface<Real>& surface, const Vec3<Real> (&p)[3], const Real
   }
   // Each weight is the distance from an edge over the height on it. In triangles that are smaller than that
   // the ray begins near the middle.
-  const Number floor = std::min(Number(0.25), off * std::sqrt(longest_squared / area_squared));
+  const Number floor =
+      std::min(Number(1) / Number(sure_clearances), off * std::sqrt(longest_squared / area_squared));
   const Number raised[3] = {std::max(weights[0], floor), std::max(weights[1], floor),
                             std::max(weights[2], floor)};
   const Number sum = raised[0] + raised[1] + raised[2];
@@ -139,10 +179,7 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   surface.point = t0 + t1 + t2;
   // Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.5.
   surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound<Real>(7));
-  // The kernel's t has an error of some 8 roundings of the triangle's own extent, however small the
-  // coordinates are: a triangle in the plane z = 0 has no error in z, yet an oblique ray that starts exactly
-  // there would hit it by rounding. 2^-48 (of doubles) leaves a factor of two.
-  surface.margin = largest(absolute(p1 - p0) + absolute(p2 - p0)) * Real(32.0 * rounding<Real>);
+  surface.margin = kernel_margin<Real>({p0, p1, p2});
 
   // In floats a triangle may have lost its area, and yet be hit: then it faces the viewer.
   surface.geometric = unit_normal(p1 - p0, p2 - p0, -direction);

@@ -12,6 +12,7 @@
 #include "accel/brute_force.h"
 #include "accel/precision.h"
 #include "sim/error.h"
+#include "studies/stability/flat_triangle.h"
 
 namespace marti::studies::stability {
 
@@ -115,6 +116,10 @@ tables::Table precision_table(const Subject& subject) {
        tables::real_column("steps", "1", "floats across the scene's largest side, at its place"),
        tables::count_column("primitives", "of the scene"),
        tables::count_column("collapsed", "primitives that have no area in floats"),
+       tables::count_column("low",
+                            "triangles too low for floats to tell on which side of a neighbour a ray begins: "
+                            "of closed bodies that have none, none escapes"),
+       tables::count_column("low_in_doubles", "triangles too low for doubles to tell it"),
        tables::count_column("rays", "traced at each place"),
        tables::count_column("hits", "of these, hit the scene where it is, in doubles"),
        tables::real_column("float_agrees", "fraction", "rays that hit the same in floats as in doubles"),
@@ -149,7 +154,9 @@ tables::Table precision_table(const Subject& subject) {
     if (floats) {
       float_share = share(agreeing(in_floats, in_doubles));
     }
-    table.add_row({place, need.steps, need.primitives, need.collapsed, rays.size(),
+    table.add_row({place, need.steps, need.primitives, need.collapsed,
+                   low_triangles(*moved->triangles, float()), low_triangles(*moved->triangles, double()),
+                   rays.size(),
                    static_cast<std::uint64_t>(std::ranges::count_if(
                        here, [](std::uint32_t id) { return id != accel::no_primitive; })),
                    float_share, share(agreeing(in_doubles, here)),

@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "processors/program/shading.h"
+#include "studies/stability/flat_triangle.h"
 #include "studies/stability/hostile_rays.h"
 #include "studies/stability/mesh_edges.h"
 #include "studies/stability/moved_scene.h"
@@ -51,36 +52,9 @@ CaseOutcome cracks(const Subject& subject, bool floats) {
   return outcome;
 }
 
-/// A triangle's corners, unit normal and least height.
-struct Flat {
-  std::array<glm::dvec3, 3> corners;
-  glm::dvec3 normal;
-  double height = 0.0;
-
-  Flat(const accel::TriangleSet& triangles, std::uint32_t id) {
-    for (unsigned k = 0; k < 3; ++k) {
-      corners[k] = triangles.corner(id, k);
-    }
-    const glm::dvec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    normal = glm::normalize(across);
-    height = glm::length(across) /
-             std::max({glm::length(corners[1] - corners[0]), glm::length(corners[2] - corners[1]),
-                       glm::length(corners[0] - corners[2])});
-  }
-  [[nodiscard]] double over(const glm::dvec3& point) const { return glm::dot(normal, point - corners[0]); }
-  /// The distance of a point of its plane from the nearest side, negative outside.
-  [[nodiscard]] double inside(const glm::dvec3& point) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (unsigned k = 0; k < 3; ++k) {
-      const glm::dvec3 side = glm::normalize(corners[(k + 1) % 3] - corners[k]);
-      least = std::min(least, glm::dot(glm::cross(normal, side), point - corners[k]));
-    }
-    return least;
-  }
-};
-
 /// Rays that begin on edges and corners, from where processors::program::leave puts them. `leave` promises to
-/// tell the sides of triangles that meet at more than some 8 degrees.
+/// tell the sides of triangles that are high enough (processors::program::sure_height) and meet at more than
+/// some 8 degrees.
 template <class Real>
 CaseOutcome leaving(const Subject& subject) {
   using Vec = processors::program::Vec3<Real>;
@@ -106,14 +80,13 @@ CaseOutcome leaving(const Subject& subject) {
     if (!other) {
       continue;
     }
-    const Flat own(triangles, id);
-    const Flat next(triangles, *other);
+    const FlatTriangle own(triangles, id, reach, Real());
+    const FlatTriangle next(triangles, *other, reach, Real());
     const double numbers = reach + largest(own.corners[first]);
     const double rise = glm::dot(own.normal, direction);
     const double turn = glm::dot(next.normal, direction);
-    if (!(std::min(own.height, next.height) > 0x1p12 * rounding * numbers) ||
-        std::min(std::abs(rise), std::abs(turn)) < eight_degrees) {
-      continue;  // so small that rounding turns them, or seen edge-on
+    if (!own.is_sure() || !next.is_sure() || std::min(std::abs(rise), std::abs(turn)) < eight_degrees) {
+      continue;  // so low that rounding decides, or seen edge-on
     }
     Real weights[3] = {};
     weights[first] = static_cast<Real>(1.0 - along);
@@ -139,7 +112,9 @@ CaseOutcome leaving(const Subject& subject) {
     }
   }
   if (stopped.of == 0) {
-    return not_tried("no two triangles share an edge");
+    return not_tried(low_triangles(triangles, Real()) == triangles.triangles()
+                         ? "all triangles are so low that rounding decides"
+                         : "no two triangles share an edge");
   }
   CaseOutcome outcome = none_wrong(stopped, "rays were stopped by what they began on");
   outcome.objection += static_cast<double>(escaped.wrong);

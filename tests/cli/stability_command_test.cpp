@@ -29,6 +29,11 @@ TEST(StabilityCommand, PrintsAndWritesItsTables) {
   }
   const std::string csv = read(out / "stability.csv");
   EXPECT_EQ(csv.find("group,case,what_could_go_wrong,oracle,figure,objection,verdict"), 0U) << csv;
+  // A float's spacing a million sizes away is a sixteenth of the scene: it keeps no triangle's edge apart.
+  const std::string places = read(out / "float_double.csv");
+  for (const char* row : {"0.0,33554432.0,64,0,0,0,", "1e+06,16.0,64,0,64,0,"}) {
+    EXPECT_NE(places.find(row), std::string::npos) << row << " in\n" << places;
+  }
 }
 
 TEST(StabilityCommand, RefusesWhatHasNoEffectOrIsOutOfRange) {

@@ -4,6 +4,7 @@
 // find them.
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include "processors/program/render.h"
+#include "processors/program/shading.h"
 #include "program_scenes.h"
 #include "tests/support/long_tests.h"
 #include "tests/unit/scenes/gltf_file.h"
@@ -196,29 +198,63 @@ TEST_P(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
   }
 }
 
-// What floats allow follows from their spacing, a part in 2^24 of the coordinates: bodies of whatever size as
-// far away as 1,000 of their own, at 1e6 too, are closed.
-TEST(ClosedScenes, AreClosedInFloatsWhereverBodiesAreLargeEnough) {
+/// The least of the triangles' heights over those that are promised to be enough (sure_height).
+template <class Real>
+double least_height_over_sure(const scenes::Scene& scene) {
+  glm::dvec3 lo = scene.positions.front();
+  glm::dvec3 hi = lo;
+  for (const glm::dvec3& p : scene.positions) {
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const scenes::Triangle& triangle : scene.triangles) {
+    const auto corner = [&](std::size_t k) { return scene.positions[triangle.vertex.at(k)]; };
+    const glm::dvec3 sides[3] = {corner(1) - corner(0), corner(2) - corner(1), corner(0) - corner(2)};
+    const double height = glm::length(glm::cross(sides[0], sides[1])) /
+                          std::max({glm::length(sides[0]), glm::length(sides[1]), glm::length(sides[2])});
+    const Vec3<Real> corners[3] = {Vec3<Real>(corner(0)), Vec3<Real>(corner(1)), Vec3<Real>(corner(2))};
+    least = std::min(least, height / sure_height(corners, largest(Vec3<double>(hi - lo))));
+  }
+  return least;
+}
+
+scenes::Scene body_of(bool sphere, const glm::dvec3& center, double size) {
+  scenes::Scene scene = inside_of(center);
+  sphere ? add_sphere(scene, center, 2.0 * size, 12) : add_box(scene, center, glm::dvec3(size), 5);
+  return scene;
+}
+
+// What floats allow follows from their spacing, a part in 2^24 of the coordinates: bodies are closed wherever
+// their triangles are as high as the bound that is derived from it. The bound is not idle: from boxes of a
+// 256th of it rays leave.
+TEST(ClosedScenes, AreClosedInFloatsWhereTrianglesAreHighEnough) {
+  std::uint64_t lost_when_low = 0;
   for (const double far : {0.0, 1000.0, 1e6}) {
     const glm::dvec3 center(far, far, far);
-    const double size = far / 1000.0 + (far == 0.0 ? 1.0 : 0.0);
     for (const bool sphere : {false, true}) {
-      scenes::Scene scene = inside_of(center);
-      sphere ? add_sphere(scene, center, 2.0 * size, 12) : add_box(scene, center, glm::dvec3(size), 5);
+      double size = 1.0;
+      for (int step = 0; far > 0.0 && step < 4; ++step) {  // towards a body that is hardly high enough
+        size *= 1.05 / least_height_over_sure<float>(body_of(sphere, center, size));
+      }
+      ASSERT_GE(least_height_over_sure<float>(body_of(sphere, center, size)), 1.0);
       for (const char* const structure : {"octree", "bsp", "grid", "bvh"}) {
         for (const Integrator integrator : {Integrator::whitted, Integrator::path}) {
           for (const bool floats : {false, true}) {
             if (floats && structure != std::string("bvh") && marti::test::stride(0, 1) == 0) {
               continue;  // cells are walked slowly in floats
             }
-            const Lost lost = lost_in(scene, integrator, floats, 24, structure);
+            const Lost lost = lost_in(body_of(sphere, center, size), integrator, floats, 24, structure);
             EXPECT_EQ(lost.escaped + lost.blocked, 0U) << (sphere ? "sphere" : "cube") << " at " << far
                                                        << " in " << structure << (floats ? ", floats" : "");
           }
         }
       }
+      const Lost low = lost_in(body_of(sphere, center, size / 256.0), Integrator::path, true, 24);
+      lost_when_low += low.escaped + low.blocked;
     }
   }
+  EXPECT_GT(lost_when_low, 0U);
 }
 
 }  // namespace
