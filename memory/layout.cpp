@@ -64,6 +64,11 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
   end_ = at;
 }
 
+void Layout::add_room(std::uint64_t bytes, std::uint64_t alignment) {
+  room_ = round_up(end_, alignment);
+  end_ = room_ + bytes;
+}
+
 std::uint64_t Layout::database_bytes() const {
   std::uint64_t sum = 0;
   for (std::size_t kind = 0; kind < record_kinds; ++kind) {

@@ -81,7 +81,11 @@ class Layout {
     const std::uint64_t bytes = section.count * section.stride;
     return kind == RecordKind::primitive ? bytes + quadrics_.count * quadrics_.stride : bytes;
   }
-  /// One past the last address, frame buffer included.
+  /// Keeps `bytes` behind the last section, from a multiple of `alignment` on, a power of two. Once at most.
+  void add_room(std::uint64_t bytes, std::uint64_t alignment);
+  /// Where that begins.
+  [[nodiscard]] Address room() const { return room_; }
+  /// One past the last address, frame buffer and room included.
   [[nodiscard]] Address end() const { return end_; }
   /// Bytes of all sections except the frame buffer: the size of one copy of the database.
   [[nodiscard]] std::uint64_t database_bytes() const;
@@ -101,6 +105,7 @@ class Layout {
 
   std::array<Section, record_kinds> sections_{};
   Section quadrics_;  ///< the second part of the primitives
+  Address room_ = 0;
   Address end_ = 0;
 };
 

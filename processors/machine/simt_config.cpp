@@ -23,6 +23,24 @@ std::string key_of_unit(const PrefetchConfig& prefetch) {
   return prefetch.stack > 0 ? "prefetch.stack" : "prefetch.treelet";
 }
 
+void check_stack(const MachineConfig& config) {
+  check_range("rt.stack", config.rt.stack, 0, most_stack_entries);
+  if (config.rt.stack == 0) {
+    return;
+  }
+  if (config.rt.warps == 0) {
+    throw sim::KeyError("rt.stack", "is for lanes of a ray-tracing unit; set rt.warps to at least 1");
+  }
+  if (config.placement == Placement::replicated) {
+    throw sim::KeyError("rt.stack",
+                        "a node whose own memory has the whole database keeps no stacks in it; set it to 0");
+  }
+  if (config.reference_bytes() < stack_entry_bytes) {
+    throw sim::KeyError("rt.stack", "needs lines of at least " + std::to_string(stack_entry_bytes) +
+                                        " bytes, those of an entry (cache.line, cache.sector)");
+  }
+}
+
 }  // namespace
 
 void check_simt(const MachineConfig& config) {
@@ -32,6 +50,9 @@ void check_simt(const MachineConfig& config) {
     }
     if (config.prefetch.into_unit()) {
       throw sim::KeyError(key_of_unit(config.prefetch), "is for node.kind = \"simt\"; use prefetch.children");
+    }
+    if (config.rt.stack > 0) {
+      throw sim::KeyError("rt.stack", "is for node.kind = \"simt\"; set it to 0");
     }
     return;
   }
@@ -53,6 +74,7 @@ void check_simt(const MachineConfig& config) {
       throw sim::KeyError(key, "must not be negative");
     }
   }
+  check_stack(config);
   check_range("prefetch.stack", config.prefetch.stack, 0, most_prefetched_entries);
   check_range("prefetch.queue", config.prefetch.queue, 1, most_queued_prefetches);
   if (config.prefetch.into_unit() && rt.warps == 0) {

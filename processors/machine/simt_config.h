@@ -37,6 +37,10 @@ inline constexpr std::uint32_t most_sectors = 8;
 /// The most tests that may be said to begin in a cycle.
 inline constexpr std::uint32_t most_test_units = 4096;
 
+/// The most entries of a lane's stack that are on chip, and bytes of an entry: a node and its distance.
+inline constexpr std::uint32_t most_stack_entries = 1024;
+inline constexpr std::uint32_t stack_entry_bytes = 8;
+
 struct SimtConfig {
   std::uint32_t lanes = 32;  ///< of a warp, 1 to most_lanes
   std::uint32_t warps = 16;  ///< of a node, 1 to most_warps
@@ -58,6 +62,9 @@ struct RtUnitConfig {
   std::int64_t quadric_cycles = 16;
   std::uint32_t box_units = 0;       ///< tests of boxes and leaves that may begin in a cycle; 0: any number
   std::uint32_t triangle_units = 0;  ///< tests of primitives that may; 0: any number
+  /// Entries of a lane's stack that are on chip, 0 to most_stack_entries; others are in memory. 0: any number
+  /// is on chip.
+  std::uint32_t stack = 0;
 };
 
 /// The part of check() for SIMT nodes; checks nothing for others.

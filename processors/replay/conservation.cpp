@@ -105,6 +105,7 @@ void check_simt(const program::WorkLog& log, const MachineResult& result) {
                   "a line that is joined is a hit");
     walk::require(counts.accesses <= counts.records, "each access has a lane that reads a record");
     walk::require(counts.rays <= counts.records, "a ray is in the unit to read a record");
+    walk::require(counts.fills <= counts.spills, "lines of stacks are written before they are read");
   }
   if (result.simt.nodes.empty()) {
     return;
@@ -114,7 +115,7 @@ void check_simt(const program::WorkLog& log, const MachineResult& result) {
   const bool leaf_records = !accel::walks_bvh(log.traversal);
   const std::int64_t most = steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts + steps.lists +
                             steps.tests + steps.passes;
-  const std::int64_t records = result.simt.counts().records;
+  const std::int64_t records = result.simt.counts().records - result.simt.counts().fills;
   walk::require(records <= most && records >= most - (leaf_records ? 0 : steps.cuts),
                 "lanes read each record of their rays once");
 }
@@ -185,8 +186,9 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
   for (const cost::NodeStatistics& node : result.nodes) {
     pixel_writes += node.writes;
   }
-  walk::require(writes == pixel_writes + built.writes,
-                "every pixel and every part of the tree is one write of the interconnect");
+  walk::require(writes == pixel_writes + built.writes + result.simt.counts().spills,
+                "every pixel, every part of the tree and every line of a stack is one write of the "
+                "interconnect");
   // Posted writes wait too, but the nodes do not.
   const cost::TimeSums time = result.time();
   // A SIMT node waits in whole cycles.

@@ -91,6 +91,7 @@ std::array<Extent, memory::record_kinds> extents_of(const program::WorkLog& log,
   } else {
     add_primitives(lines, layout, steps, of(primitive));
   }
+  of(node).most += result.simt.counts().fills;  // each a line of a stack, counted as a node's
   lines.add_records(of(material), count(material), layout.material_bytes,
                     lines.stride(layout.material_bytes));
   lines.add_records(of(texel), count(texel), layout.texel_bytes, layout.texel_bytes);
@@ -129,7 +130,8 @@ void check_records(const program::WorkLog& log, const machine::MachineConfig& co
       (result.simt.nodes.empty() ? sim::Sum{writes} : sim::Sum{result.steps().pixels}) *
       config.layout.pixel_bytes;
   if (config.cache.organisation != machine::CacheOrganisation::none) {
-    walk::require(bytes == of_pixels + reads * config.reference_bytes(),
+    const sim::Sum lines = reads + result.simt.counts().spills;
+    walk::require(bytes == of_pixels + lines * config.reference_bytes(),
                   "an interconnect moves whole lines and pixels");
   } else if (reads > 0 && config.l2.sharing == machine::SecondLevel::none &&
              (result.leaf_records || result.steps().cuts == 0)) {

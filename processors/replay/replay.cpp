@@ -229,8 +229,11 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
                             std::to_string(log.treelet_records) +
                             " nodes, and the machine has others; trace it again (rt.order)");
   }
-  if (config.prefetch.stack > 0 && !log.has_entered()) {
-    throw sim::KeyError("prefetch.stack",
+  if (config.rt.stack > 0 && !accel::walks_bvh(log.traversal)) {
+    throw sim::KeyError("rt.stack", "only the walk of a bvh keeps entries that wait; set it to 0");
+  }
+  if ((config.prefetch.stack > 0 || config.rt.stack > 0) && !log.has_entered()) {
+    throw sim::KeyError(config.prefetch.stack > 0 ? "prefetch.stack" : "rt.stack",
                         "the frame was traced without noting which children rays enter, as that of a machine "
                         "with other nodes is; begin anew with node.kind = \"simt\"");
   }

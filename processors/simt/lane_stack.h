@@ -21,6 +21,25 @@ class LaneStack {
   void begin_ray() {
     waiting_.assign(1, 0);
     children_ = {0, 1};
+    entered_now_ = 1;
+  }
+  /// The ray visits no further node: what still waits is dropped.
+  void end_ray() {
+    waiting_.clear();
+    entered_now_ = 0;
+  }
+
+  /// Of the children that the ray has entered in its last visit it keeps the nearest, which it takes next; so
+  /// many it has pushed.
+  [[nodiscard]] std::uint32_t pushed() const { return entered_now_ == 0 ? 0 : entered_now_ - 1; }
+  /// How many entries it pops from those that it has pushed to go on with a node, or to drop them all.
+  [[nodiscard]] std::uint32_t popped_for(std::uint32_t node) const {
+    const auto taken = std::find(waiting_.rbegin(), waiting_.rend(), node);
+    sim::ensure(taken != waiting_.rend(), "a ray of the work log visits a node that it has not entered");
+    return static_cast<std::uint32_t>(taken - waiting_.rbegin()) + (entered_now_ == 0 ? 1 : 0);
+  }
+  [[nodiscard]] std::uint32_t popped_for_all() const {
+    return static_cast<std::uint32_t>(waiting_.size()) - (entered_now_ == 0 ? 0 : 1);
   }
 
   /// The ray goes on with a node. If that is neither the root nor a child of the branch visited before, calls
@@ -40,11 +59,13 @@ class LaneStack {
       }
     }
     children_ = {};
+    entered_now_ = 0;
     if (tree[node].leaf) {
       return;
     }
     children_ = {tree[node].first, tree[node].count};
     const accel::EnteredChildren entered(*entered_++);
+    entered_now_ = entered.count();
     for (std::uint32_t place = entered.count(); place-- > 0;) {
       waiting_.push_back(children_.first + entered[place]);
     }
@@ -59,6 +80,7 @@ class LaneStack {
   const std::uint32_t* entered_ = nullptr;  // of the next branch
   std::vector<std::uint32_t> waiting_;      // the next one last
   Children children_;                       // of the branch visited last, if that was the last visit
+  std::uint32_t entered_now_ = 0;           // of these, how many were entered
 };
 
 }  // namespace marti::processors::simt

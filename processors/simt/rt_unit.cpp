@@ -10,11 +10,11 @@ namespace marti::processors::simt {
 
 void SimtNode::leave_and_enter() {
   const machine::RtUnitConfig& rt = shared_.input.config.rt;
-  const auto leaves = std::find_if(in_unit_.begin(), in_unit_.end(),
-                                   [&](std::uint32_t warp) { return warps_[warp].tracing == 0; });
-  if (leaves != in_unit_.end()) {
-    const std::uint32_t number = *leaves;
-    in_unit_.erase(leaves);
+  const auto first =
+      std::find_if(in_unit_.begin(), in_unit_.end(), [&](std::uint32_t warp) { return leaves(warp); });
+  if (first != in_unit_.end()) {
+    const std::uint32_t number = *first;
+    in_unit_.erase(first);
     Warp& warp = warps_[number];
     unit_slots_ &= ~(std::uint64_t{1} << warp.slot);
     warp.state = LaneState::held;
@@ -250,6 +250,9 @@ void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
   if (!stacks_.empty()) {
     stack(warp, number).begin_ray();
   }
+  if (!spilled_stacks_.empty()) {
+    spilled_stacks_[place_of(warp, number)].stack.clear();
+  }
   if (!lane_treelets_.empty()) {
     lane_treelet(warp, number) = no_treelet;
   }
@@ -257,9 +260,17 @@ void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
 
 // Takes a lane in the unit, or one that is to enter it, to its next record.
 bool SimtNode::next_record(std::uint32_t warp, std::uint32_t number) {
+  if (!spilled_stacks_.empty() && read_stack(warp, number)) {
+    return true;
+  }
   Lane& its = lane(warp, number);
   const std::uint32_t* const visit = its.word;
-  if (!shared_.walk.next_record(its, statistics_.steps)) {
+  const bool more = shared_.walk.next_record(its, statistics_.steps);
+  if (!spilled_stacks_.empty() && (!more || its.word != visit) &&
+      move_stack(warp, number, more ? visit : nullptr)) {
+    return true;
+  }
+  if (!more) {
     return false;
   }
   if (its.word != visit && (!stacks_.empty() || !lane_treelets_.empty())) {
@@ -273,8 +284,11 @@ void SimtNode::follow(std::uint32_t warp, std::uint32_t number, std::uint32_t vi
   const std::uint32_t node = program::operand_of(visit);
   Wish wish = {warps_[warp].entered, number, static_cast<std::uint32_t>(wished_.size())};
   if (!stacks_.empty()) {
+    // What is in memory is not known on chip.
+    const std::uint32_t near =
+        spilled_stacks_.empty() ? ~0U : spilled_stacks_[place_of(warp, number)].stack.near();
     stack(warp, number)
-        .visit(shared_.input.log.topology.nodes, node, shared_.input.config.prefetch.stack,
+        .visit(shared_.input.log.topology.nodes, node, std::min(near, shared_.input.config.prefetch.stack),
                [&](std::uint32_t waiting) { wished_.push_back(waiting); });
   }
   wish.end = static_cast<std::uint32_t>(wished_.size());

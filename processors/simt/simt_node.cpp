@@ -39,6 +39,10 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
     treelets = accel::treelets_of(replay.log.topology, !accel::walks_bvh(replay.log.traversal),
                                   walk::treelet_records(replay.config.layout));
   }
+  if (rt.stack > 0) {
+    stack_places = walk::stack_places(replay.log, replay.config, replay.layout);
+    stack_size = {rt.stack, replay.config.reference_bytes() / machine::stack_entry_bytes};
+  }
   test_cycles = {0, rt.box_cycles, rt.leaf_cycles, rt.triangle_cycles, rt.quadric_cycles};
 }
 
@@ -55,7 +59,8 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
       without_packet_(live_),
       last_slot_(machine::most_warps - 1),
       prefetches_(shared.input.config.prefetch.queue),
-      stacks_(shared.input.config.prefetch.stack > 0 ? lanes_.size() : 0),
+      stacks_(shared.input.config.prefetch.stack > 0 || shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
+      spilled_stacks_(shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
       lane_treelets_(shared.treelets ? lanes_.size() : 0) {}
 
 void SimtNode::settle(std::int64_t cycle) {
@@ -143,6 +148,9 @@ void SimtNode::step(std::int64_t cycle) {
   if (!wishes_.empty()) {
     put_prefetches();
   }
+  if (!spills_.empty()) {
+    write_stacks();
+  }
   leave_and_enter();
   // Step 5.
   write_out();
@@ -213,9 +221,9 @@ void SimtNode::look_up(std::int64_t cycle) {
                     std::any_of(in_unit_.begin(), in_unit_.end(),
                                 [&](std::uint32_t warp) { return warps_[warp].wants != 0; });
   const bool unit = !unit_waiters_.empty() && in_unit_.size() < shared_.input.config.rt.warps;
-  const bool leaves = std::any_of(in_unit_.begin(), in_unit_.end(),
-                                  [&](std::uint32_t warp) { return warps_[warp].tracing == 0; });
-  if ((more && !blocked) || unit || leaves || !waiting_boxes_.empty() || !waiting_primitives_.empty()) {
+  const bool leave =
+      std::any_of(in_unit_.begin(), in_unit_.end(), [&](std::uint32_t warp) { return leaves(warp); });
+  if ((more && !blocked) || unit || leave || !waiting_boxes_.empty() || !waiting_primitives_.empty()) {
     queue_.push(cycle + 1, {});
   }
 }
@@ -357,7 +365,7 @@ void SimtNode::arrives(std::uint32_t number, const memory::Service& service, std
 
 std::size_t SimtNode::bytes() const {
   return sizeof(SimtNode) + warps_.size() * sizeof(Warp) + lanes_.size() * sizeof(Lane) +
-         stacks_.size() * sizeof(LaneStack);
+         stacks_.size() * sizeof(LaneStack) + spilled_stacks_.size() * sizeof(SpilledStack);
 }
 
 }  // namespace marti::processors::simt

@@ -19,9 +19,11 @@
 #include "processors/simt/prefetch_queue.h"
 #include "processors/simt/rt_unit.h"
 #include "processors/simt/sector_caches.h"
+#include "processors/simt/short_stack.h"
 #include "processors/simt/warp.h"
 #include "processors/walk/behind_cache.h"
 #include "processors/walk/cache_counting.h"
+#include "processors/walk/record_places.h"
 
 namespace marti::processors::simt {
 
@@ -43,7 +45,9 @@ struct SimtShared {
   std::array<std::int64_t, shader_steps> shader_cycles{};
   std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
   RoundCounts round_cycles{};
-  unsigned unit_shift = 0;  ///< from addresses to lines
+  unsigned unit_shift = 0;           ///< from addresses to lines
+  walk::StackPlaces stack_places{};  ///< where stacks are in memory
+  ShortStack::Size stack_size{};
 
   /// Calls use(unit) for each line, or sector, that holds some of the bytes, in the order of addresses.
   template <class Use>
@@ -75,7 +79,7 @@ class SimtNode {
 
   /// What the node asks for in a cycle; its user takes it and clears it.
   std::vector<memory::Transaction> reads;  ///< ports are registers
-  std::vector<PixelWrite> writes;
+  std::vector<Write> writes;
   std::vector<std::uint32_t> asks;  ///< warps that ask for a packet
 
   /// Steps 1 to 6 of a cycle.
@@ -168,6 +172,14 @@ class SimtNode {
   bool next_record(std::uint32_t warp, std::uint32_t number);
   void follow(std::uint32_t warp, std::uint32_t number, std::uint32_t visit);
   void put_prefetches();
+  [[nodiscard]] bool leaves(std::uint32_t warp) const {
+    return warps_[warp].tracing == 0 && warps_[warp].unposted == 0;
+  }
+
+  // spilled_stacks.cpp: stacks that are in memory in part.
+  bool read_stack(std::uint32_t warp, std::uint32_t number);
+  bool move_stack(std::uint32_t warp, std::uint32_t number, const std::uint32_t* visit);
+  void write_stacks();
 
   // Lines.
   bool look_up_line(std::uint32_t waiter, const LineRead& line);
@@ -201,7 +213,12 @@ class SimtNode {
   std::vector<Slot> slots_;                  // in the order in which they were taken
   std::vector<std::uint32_t> slot_waiters_;  // warps, in the order in which they are served
   std::vector<std::uint32_t> readers_;       // warps whose phases have lines to look up, in that order
-  std::deque<std::uint32_t> writers_;        // warps whose pixels wait for the write buffer
+  // What waits for the write buffer: the pixels of a warp, or a line of the stack of one of its lanes.
+  struct Writer {
+    std::uint32_t warp = 0;
+    std::optional<memory::Address> line{};
+  };
+  std::deque<Writer> writers_;
 
   // The unit.
   Pool<Access> accesses_;
@@ -235,9 +252,26 @@ class SimtNode {
   };
   static constexpr std::uint32_t no_treelet = ~std::uint32_t{0};
   PrefetchQueue prefetches_;
-  std::vector<LaneStack> stacks_;      // of each lane of each warp; empty without stack prefetch
+  std::vector<LaneStack> stacks_;      // of each lane of each warp; empty where none is asked for
   std::vector<Wish> wishes_;           // of this cycle
   std::vector<std::uint32_t> wished_;  // nodes of the tree
+
+  // Stacks in memory.
+  struct SpilledStack {
+    ShortStack stack;
+    std::uint32_t to_read = 0;  // lines that the lane has still to read back
+    bool goes_on = false;       // with a visit, when it has read them
+    std::uint32_t visit = 0;    // its word
+    Record record;              // its first one
+  };
+  struct Spill {
+    std::uint64_t entered = 0;  // of the lane's warp
+    std::uint32_t lane = 0;
+    std::uint32_t warp = 0;
+    memory::Address line = 0;
+  };
+  std::vector<SpilledStack> spilled_stacks_;  // of each lane of each warp; empty with all on chip
+  std::vector<Spill> spills_;                 // of this cycle
 
   // Treelets.
   std::vector<std::uint32_t> lane_treelets_;  // of the record that each lane of each warp wants or has

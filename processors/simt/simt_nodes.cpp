@@ -292,9 +292,9 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
   }
 
   void write(std::uint32_t node) {
-    for (const PixelWrite& pixel : nodes_[node].writes) {
-      ++statistics_[node].writes;
-      Base::make_write(node, pixel.at, pixel.bytes);
+    for (const Write& one : nodes_[node].writes) {
+      statistics_[node].writes += one.pixels ? 1 : 0;
+      Base::make_write(node, one.at, one.bytes);
     }
     nodes_[node].writes.clear();
     if (nodes_[node].waits_for_room()) {

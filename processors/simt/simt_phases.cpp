@@ -230,7 +230,7 @@ void SimtNode::end_shading(std::uint32_t number) {
     const memory::Address at =
         layout.address(memory::RecordKind::pixel, std::uint64_t{pixel.y} * shared_.input.log.width + pixel.x);
     if (!warp.writes.empty()) {
-      PixelWrite& last = warp.writes.back();
+      Write& last = warp.writes.back();
       if (last.at + last.bytes == at && (at + bytes - 1) / line == last.at / line) {
         last.bytes += bytes;
         return;
@@ -238,21 +238,32 @@ void SimtNode::end_shading(std::uint32_t number) {
     }
     warp.writes.push_back({at, bytes});
   });
-  writers_.push_back(number);
+  writers_.push_back({number, std::nullopt});
   write_out();
 }
 
 // Posts the writes for which there is room.
 void SimtNode::write_out() {
+  const std::uint32_t line = shared_.input.config.reference_bytes();
   while (!writers_.empty()) {
-    Warp& warp = warps_[writers_.front()];
+    const Writer writer = writers_.front();
+    Warp& warp = warps_[writer.warp];
+    if (writer.line) {
+      if (!room_.has_room(number_, writes.size())) {
+        return;
+      }
+      writes.push_back({*writer.line, line, false});
+      --warp.unposted;
+      writers_.pop_front();
+      continue;
+    }
     while (warp.next_write != warp.writes.size() && room_.has_room(number_, writes.size())) {
       writes.push_back(warp.writes[warp.next_write++]);
     }
     if (warp.next_write != warp.writes.size()) {
       return;
     }
-    touched_ |= std::uint64_t{1} << writers_.front();
+    touched_ |= std::uint64_t{1} << writer.warp;
     writers_.pop_front();
   }
 }

@@ -30,9 +30,11 @@ struct LineRead {
   walk::Origin origin{};  ///< of the first lane that reads it
 };
 
-struct PixelWrite {
+/// Of pixels, or of a line of a lane's stack.
+struct Write {
   memory::Address at = 0;
   std::uint32_t bytes = 0;
+  bool pixels = true;
 };
 
 /// What a warp does: it has no packet, or none is left; it is in a shader phase, or in a round of tracing
@@ -65,12 +67,13 @@ struct Warp {
 
   // Of a trace phase.
   std::int64_t trace_began = 0;
-  Lanes wants = 0;            ///< lanes that want a record, in the unit
-  Lanes tracing = 0;          ///< lanes that are not done
-  std::uint32_t slot = 0;     ///< of the unit
-  std::uint64_t entered = 0;  ///< how many warps had entered the unit before
+  Lanes wants = 0;             ///< lanes that want a record, in the unit
+  Lanes tracing = 0;           ///< lanes that are not done
+  std::uint32_t slot = 0;      ///< of the unit
+  std::uint64_t entered = 0;   ///< how many warps had entered the unit before
+  std::uint32_t unposted = 0;  ///< lines of its lanes' stacks that wait for the write buffer
 
-  std::vector<PixelWrite> writes;
+  std::vector<Write> writes;
   std::size_t next_write = 0;
 
   LaneState state = LaneState::held;  ///< of `state_lanes` lanes, which are counted as such; others are held

@@ -42,6 +42,27 @@ std::uint32_t inline_record_bytes(const program::WorkLog& log, const memory::Lay
   return log.triangles() == 0 ? layout.quadric_bytes : std::max(layout.primitive_bytes, layout.quadric_bytes);
 }
 
+StackPlaces stack_places(const program::WorkLog& log, const machine::MachineConfig& config,
+                         const memory::Layout& layout) {
+  // A branch on a ray's way leaves all children but one to wait.
+  const std::vector<accel::TopologyNode>& nodes = log.topology.nodes;
+  std::uint64_t deepest = 0;
+  std::uint64_t children = 1;
+  for (const accel::TopologyNode& node : nodes) {
+    deepest = std::max<std::uint64_t>(deepest, node.level);
+    children = std::max<std::uint64_t>(children, node.leaf ? 0 : node.count);
+  }
+  const std::uint64_t entries = (deepest - (nodes.empty() ? 0 : nodes.front().level)) * (children - 1);
+  const auto up = [](std::uint64_t bytes, std::uint64_t multiple) {
+    return (bytes + multiple - 1) / multiple * multiple;
+  };
+  StackPlaces places;
+  places.begin = layout.room();
+  places.lane_bytes = up(entries * machine::stack_entry_bytes, config.reference_bytes());
+  places.node_bytes = up(places.lane_bytes * config.simt.lanes * config.simt.warps, config.cache.cache.line);
+  return places;
+}
+
 memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,
                          std::optional<TreePlan>& plan) {
   memory::LayoutConfig records = config.layout;
@@ -58,8 +79,11 @@ memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConf
                                        log.materials,
                                        log.texture_begin.empty() ? 0 : log.texture_begin.back(),
                                        std::uint64_t{log.width} * log.height};
-  const memory::Layout layout(records, counts, inline_records ? 0 : log.quadrics.size());
+  memory::Layout layout(records, counts, inline_records ? 0 : log.quadrics.size());
   const std::uint32_t unit = config.reference_bytes();
+  if (config.kind == machine::NodeKind::simt && config.rt.stack > 0) {
+    layout.add_room(stack_places(log, config, layout).node_bytes * config.nodes, config.cache.cache.line);
+  }
   if (plan) {
     plan->place_behind(layout, unit);
   }

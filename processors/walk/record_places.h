@@ -27,6 +27,24 @@ namespace marti::processors::walk {
 [[nodiscard]] std::uint32_t inline_record_bytes(const program::WorkLog& log,
                                                 const memory::LayoutConfig& layout);
 
+/// Where lanes of SIMT nodes keep the parts of their stacks that are not on chip (RtUnitConfig::stack):
+/// behind the frame buffer of their cluster's memory. Each node's part begins on a line, each lane's on a
+/// sector.
+struct StackPlaces {
+  memory::Address begin = 0;
+  std::uint64_t lane_bytes = 0;
+  std::uint64_t node_bytes = 0;
+
+  /// `node`: its number in its cluster; `lane`: that of a lane among those of all of its warps.
+  [[nodiscard]] memory::Address of(std::uint32_t node, std::uint64_t lane) const {
+    return begin + node * node_bytes + lane * lane_bytes;
+  }
+};
+
+/// For a layout that layout_of() has made for this machine, which has such stacks.
+[[nodiscard]] StackPlaces stack_places(const program::WorkLog& log, const machine::MachineConfig& config,
+                                       const memory::Layout& layout);
+
 /// The layout of the database's records; sets `plan` to the places of what is built during the frame, behind
 /// them. Throws UserError for a database too large for line numbers.
 [[nodiscard]] memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConfig& config,

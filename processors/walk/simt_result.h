@@ -33,6 +33,8 @@ struct SimtCounts {
   std::int64_t ray_cycles = 0;
   std::int64_t longest_ray = 0;
   std::int64_t longest_warp = 0;
+  std::int64_t spills = 0;
+  std::int64_t fills = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<SimtCounts>;
@@ -77,7 +79,9 @@ struct SimtCounts {
           &SimtCounts::ray_cycles},
         C{"longest_ray", "cycle", "the most cycles of a ray", &SimtCounts::longest_ray, MergeRule::maximum},
         C{"longest_warp", "cycle", "the most cycles of a warp with one packet", &SimtCounts::longest_warp,
-          MergeRule::maximum}};
+          MergeRule::maximum},
+        C{"spills", "1", "lines of traversal stacks written to memory (rt.stack)", &SimtCounts::spills},
+        C{"fills", "1", "lines of traversal stacks read back", &SimtCounts::fills}};
   }
 };
 static_assert(sim::declares_every_member<SimtCounts>());

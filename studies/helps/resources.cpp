@@ -129,6 +129,11 @@ void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<
   resources.push_back(more(changer, Part::nodes, "rt.warps", machine.simt.warps));
   // As many entries as a branch has children. Only a bvh has stacks; the change is refused with others.
   resources.push_back(more(changer, Part::caches, "prefetch.stack", accel::EnteredChildren::most));
+  if (machine.rt.stack > 0) {
+    Resource stack = more(changer, Part::nodes, "rt.stack");
+    stack.best = changer.with({{"rt.stack", std::int64_t{0}}});
+    resources.push_back(std::move(stack));
+  }
   for (const auto& [key, units] :
        {std::pair{"rt.box_units", machine.rt.box_units}, {"rt.triangle_units", machine.rt.triangle_units}}) {
     if (units > 0) {

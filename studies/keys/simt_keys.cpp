@@ -13,6 +13,25 @@ using processors::machine::most_test_units;
 using processors::machine::most_warps;
 using processors::machine::NodeKind;
 
+namespace {
+
+void read_stack(sim::Config& config, processors::machine::RtUnitConfig& rt) {
+  rt.stack = count(config, "rt.stack");
+  if (rt.stack == 0) {
+    return;
+  }
+  if (const std::string& structure = config.choice_name("structure.kind"); structure != "bvh") {
+    config.fail("rt.stack", "must be 0 with structure.kind = \"" + structure +
+                                "\": only the walk of a bvh keeps entries that wait");
+  }
+  if (config.choice_as<accel::WalkOrder>("rt.order") != accel::WalkOrder::depth_first) {
+    config.fail("rt.stack", "must be 0 with rt.order = \"" + config.choice_name("rt.order") +
+                                "\": only rays that go depth first have a stack");
+  }
+}
+
+}  // namespace
+
 void declare_node_kind(sim::Schema& schema) {
   schema.choice(
       "node.kind", "core", names(processors::machine::node_kind_names),
@@ -54,6 +73,10 @@ void declare_simt_keys(sim::Schema& schema) {
                  "tests of branches and leaves that may begin in a cycle; 0: any number");
   schema.integer("rt.triangle_units", 0, {0, most_test_units}, "",
                  "tests of primitives that may begin in a cycle; 0: any number");
+  schema.integer(
+      "rt.stack", 0, {0, processors::machine::most_stack_entries}, "",
+      "bvh, depth first: entries of a lane's stack that are on chip, older ones are in memory; 0: any "
+      "number is on chip");
 }
 
 void declare_simt_cache_keys(sim::Schema& schema) {
@@ -98,6 +121,7 @@ void read_simt(sim::Config& config, processors::machine::MachineConfig& machine)
     rt.quadric_cycles = config.integer("rt.quadric_cycles");
     rt.box_units = count(config, "rt.box_units");
     rt.triangle_units = count(config, "rt.triangle_units");
+    read_stack(config, rt);
   }
   config.mark_unused_reason("rt", "there is no unit with rt.warps = 0", "rt.warps");
   sim::with_places(config, [&] { processors::machine::check_simt(machine); });

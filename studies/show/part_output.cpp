@@ -144,6 +144,11 @@ std::string simt_lines(const run::RunResult& r) {
       "\n  {:<12}{:.2f} lanes an access; mean {:.1f} of {} under way, {} joined; none free {} of the time\n",
       "lines", number("simt_lanes_an_access"), number("simt_mean_lines"), r.machine.simt.mshrs,
       tables::grouped(r.count("simt_joined")), percent(r.figure("simt_full_share")));
+  if (r.machine.rt.stack > 0) {
+    fmt::format_to(out, "  {:<12}{} lines written, {} read back; {} entries of a lane on chip\n", "stacks",
+                   tables::grouped(r.count("simt_spills")), tables::grouped(r.count("simt_fills")),
+                   r.machine.rt.stack);
+  }
   const processors::program::LogTotals& log = r.functional.totals;
   fmt::format_to(
       out, "  {:<12}{:.1f} visits on average, {} at most of 95 %, the most {}; {:.0f} bytes from memory\n",

@@ -66,6 +66,7 @@ struct Lane {
   std::optional<std::uint32_t> ray;  // the operand of the `ray` step whose visits come next
   bool picked = false;
   std::vector<NaiveVisit> visits;
+  std::vector<memory::Address> last_spills;
   std::size_t at = 0;
   // In the unit.
   enum class In { none, wants, reads, waits, tests, done } in = In::none;
@@ -101,6 +102,7 @@ struct Warp {
   Cycle trace_began = 0;
   std::uint64_t entered = 0;  // the unit: a number that grows
   std::deque<memory::Transaction> writes;
+  std::size_t unposted = 0;  // lines of its lanes' stacks
   [[nodiscard]] bool has_packet() const {
     return does != Does::ask && does != Does::wait_for_packet && does != Does::nothing;
   }
@@ -135,10 +137,14 @@ struct Node {
   std::shared_ptr<Reading> sending;
   std::optional<std::size_t> stuck;             // the warp whose phase found no register
   std::optional<memory::RecordKind> looked_up;  // in this cycle
-  std::deque<std::size_t> writers;              // warps
-  std::vector<WriteEntry> buffer;               // the entry to take next comes first
-  std::deque<std::size_t> posted;               // entries whose end is not known
-  std::deque<memory::Transaction> to_post;      // in this cycle
+  struct Writer {
+    std::size_t warp = 0;
+    std::optional<memory::Address> line{};  // of a stack; null: the warp's pixels
+  };
+  std::deque<Writer> writers;
+  std::vector<WriteEntry> buffer;           // the entry to take next comes first
+  std::deque<std::size_t> posted;           // entries whose end is not known
+  std::deque<memory::Transaction> to_post;  // in this cycle
   std::size_t next_entry = 0;
   Cycle memory_cycles = 0;
   memory::Service parts;
@@ -299,7 +305,7 @@ class NaiveSimt final : public sim::EventHandler {
     begin_tests(node);
     end_tests(node);
     leave_and_enter(node);
-    while (!node.writers.empty() && takes_entries(node, node.warps[node.writers.front()])) {
+    while (!node.writers.empty() && writes_first(node)) {
       node.writers.pop_front();
     }
     for (std::size_t warp = 0; warp < node.warps.size(); ++warp) {
@@ -380,10 +386,12 @@ class NaiveSimt final : public sim::EventHandler {
 
   void end_tests(Node& node) {
     std::map<std::pair<std::uint64_t, std::size_t>, const NaiveVisit*> wishing;
+    std::map<std::pair<std::uint64_t, std::size_t>, std::pair<std::size_t, const Lane*>> ended;
     for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
       if (lane.in == Lane::In::tests && lane.ends <= node.cycle) {
         ++lane.at;
         lane.in = Lane::In::wants;
+        ended[{warp.entered, lane.number}] = {static_cast<std::size_t>(&warp - node.warps.data()), &lane};
         if (lane.at == lane.visits.size()) {
           lane.in = Lane::In::done;
           count_ray(node, warp);
@@ -407,6 +415,15 @@ class NaiveSimt final : public sim::EventHandler {
         }
       }
     }
+    for (const auto& [order, of] : ended) {
+      const auto& [warp, lane] = of;
+      const bool done = lane->in == Lane::In::done;
+      for (const memory::Address line : done ? lane->last_spills : lane->visits[lane->at].spills) {
+        node.writers.push_back({warp, line});
+        ++node.warps[warp].unposted;
+        ++node.counts.spills;
+      }
+    }
   }
 
   static void count_ray(Node& node, const Warp& warp) {
@@ -423,9 +440,10 @@ class NaiveSimt final : public sim::EventHandler {
         continue;
       }
       const Warp& warp = node.warps[*node.unit[slot]];
-      const bool over = std::all_of(warp.lanes.begin(), warp.lanes.end(), [](const Lane& lane) {
-        return !lane.picked || lane.in == Lane::In::done;
-      });
+      const bool over =
+          warp.unposted == 0 && std::all_of(warp.lanes.begin(), warp.lanes.end(), [](const Lane& lane) {
+            return !lane.picked || lane.in == Lane::In::done;
+          });
       if (over && (!leaves || warp.entered < node.warps[*node.unit[*leaves]].entered)) {
         leaves = slot;
       }
@@ -658,23 +676,43 @@ class NaiveSimt final : public sim::EventHandler {
     join_writes(warp);
     warp.does = Warp::Does::write;
     if (!node.writers.empty() || !takes_entries(node, warp)) {
-      node.writers.push_back(number);
+      node.writers.push_back({number});
     }
+  }
+  // Posts what the first of those that wait writes; whether that is all.
+  bool writes_first(Node& node) const {
+    const Node::Writer& first = node.writers.front();
+    Warp& warp = node.warps[first.warp];
+    if (!first.line) {
+      return takes_entries(node, warp);
+    }
+    if (!takes_entry(node, {0, *first.line, unit_})) {
+      return false;
+    }
+    --warp.unposted;
+    return true;
   }
   // Posts the writes of a warp for which there is room; whether these are all.
   bool takes_entries(Node& node, Warp& warp) const {
     while (!warp.writes.empty()) {
-      WriteEntry& entry = node.buffer[node.next_entry];
-      if (entry.posted == node.cycle || entry.end > engine_.now()) {
+      if (!takes_entry(node, warp.writes.front())) {
         return false;
       }
-      entry = {node.cycle, never};
-      node.posted.push_back(node.next_entry);
-      node.next_entry = (node.next_entry + 1) % node.buffer.size();
-      node.to_post.push_back(warp.writes.front());
       warp.writes.pop_front();
+      ++node.statistics.writes;
     }
     warp.does = Warp::Does::written;
+    return true;
+  }
+  bool takes_entry(Node& node, const memory::Transaction& write) const {
+    WriteEntry& entry = node.buffer[node.next_entry];
+    if (entry.posted == node.cycle || entry.end > engine_.now()) {
+      return false;
+    }
+    entry = {node.cycle, never};
+    node.posted.push_back(node.next_entry);
+    node.next_entry = (node.next_entry + 1) % node.buffer.size();
+    node.to_post.push_back(write);
     return true;
   }
 
@@ -718,7 +756,15 @@ class NaiveSimt final : public sim::EventHandler {
       lane.visits.clear();
       lane.at = 0;
       if (lane.picked) {
-        lane.visits = program_.visits(lane.words, lane.next, node.statistics.steps, lane.entered);
+        NaiveRay ray = program_.visits(ray_kind_of(*lane.ray), lane.words, lane.next, node.statistics.steps,
+                                       lane.entered, stack_place(node, warp, lane));
+        lane.visits = std::move(ray.visits);
+        node.counts.fills +=
+            std::count_if(lane.visits.begin(), lane.visits.end(), [](const NaiveVisit& visit) {
+              return visit.record && visit.record->kind == memory::RecordKind::node &&
+                     visit.record->test == NaiveTest::none;
+            });
+        lane.last_spills = std::move(ray.spills);
         if (has_unit()) {
           std::erase_if(lane.visits, [](const NaiveVisit& visit) { return !visit.record; });
         }
@@ -732,6 +778,20 @@ class NaiveSimt final : public sim::EventHandler {
     } else {
       begin_round(node, warp);
     }
+  }
+
+  // Nodes of a cluster have their places one after the other, from a line on each; so have lanes of a node.
+  [[nodiscard]] memory::Address stack_place(const Node& node, const Warp& warp, const Lane& lane) const {
+    const auto number = static_cast<std::uint64_t>(&node - nodes_.data()) % machine_.nodes;
+    const auto of_warp = static_cast<std::uint64_t>(&warp - node.warps.data());
+    const auto up = [&](std::uint64_t bytes) {
+      const std::uint64_t line = machine_.cache.cache.line;
+      return (bytes + line - 1) / line * line;
+    };
+    const std::uint64_t each = program_.stack_bytes();
+    return up(layout_.address(memory::RecordKind::pixel, std::uint64_t{log_.width} * log_.height)) +
+           number * up(each * machine_.simt.lanes * machine_.simt.warps) +
+           (of_warp * machine_.simt.lanes + lane.number) * each;
   }
 
   void end_trace(Node& node, Warp& warp) {
@@ -1055,7 +1115,6 @@ class NaiveSimt final : public sim::EventHandler {
     Node& node = nodes_[number];
     for (; !node.to_post.empty(); node.to_post.pop_front()) {
       const memory::Transaction& write = node.to_post.front();
-      ++node.statistics.writes;
       interconnects_[number / machine_.nodes]->write(
           {number % machine_.nodes * machine_.simt.mshrs, write.address, write.bytes});
     }
@@ -1132,7 +1191,7 @@ class NaiveSimt final : public sim::EventHandler {
       return std::any_of(node.warps.begin(), node.warps.end(),
                          [does](const Warp& warp) { return warp.does == does; });
     };
-    return any(Warp::Does::write)             ? Activity::queue_full_wait
+    return !node.writers.empty()              ? Activity::queue_full_wait
            : any(Warp::Does::wait_for_packet) ? Activity::dispatch_wait
                                               : Activity::idle;
   }

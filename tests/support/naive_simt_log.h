@@ -14,6 +14,7 @@
 #include "processors/walk/node_order.h"
 #include "processors/walk/record_places.h"
 #include "tests/support/naive_program.h"
+#include "tests/support/naive_stack.h"
 
 namespace marti::test {
 
@@ -34,7 +35,14 @@ struct NaiveVisit {
   StepCounts steps;
   /// To be prefetched when the lane wants the record: of each item the lines of all its records, each once.
   std::vector<std::vector<NaiveRecord>> wishes;
-  std::uint32_t treelet = 0;  ///< of the record
+  std::uint32_t treelet = 0;              ///< of the record
+  std::vector<memory::Address> spills{};  ///< lines that are written when the lane wants the record
+};
+
+/// What a ray does in the unit.
+struct NaiveRay {
+  std::vector<NaiveVisit> visits;
+  std::vector<memory::Address> spills;  ///< lines that are written when it is done
 };
 
 /// The cycles of a phase, and of one that several lanes take together.
@@ -102,25 +110,38 @@ class NaiveSimtLog {
   [[nodiscard]] NaiveRecord texel(std::uint32_t texture, std::uint32_t number) const {
     return record(memory::RecordKind::texel, log_.texture_begin[texture] + number, NaiveTest::none);
   }
-  /// The records of the visits that begin at `at`, which moves behind them. Counts their steps. `entered`: of
-  /// the branches from here on, if wishes are asked for; what is read is taken off.
-  std::vector<NaiveVisit> visits(std::span<const std::uint32_t> words, std::size_t& at, StepCounts& counted,
-                                 std::span<const std::uint32_t>& entered) const {
+  /// The records of the visits of a ray that begin at `at`, which moves behind them. Counts their steps.
+  /// `entered`: of the branches from here on, if stacks are asked for; what is read is taken off. `place`: of
+  /// the lane's stack in memory.
+  NaiveRay visits(RayKind ray, std::span<const std::uint32_t> words, std::size_t& at, StepCounts& counted,
+                  std::span<const std::uint32_t>& entered, memory::Address place) const {
     std::vector<NaiveVisit> visits;
-    std::vector<std::uint32_t> stack = {0};
+    const std::uint32_t line = machine_.reference_bytes();
+    NaiveStack stack(machine_.rt.stack, std::max(1U, line / 8));
+    std::vector<memory::Address> spills;  // before the next record
+    const auto moves = [&] {              // what the stack has written and read
+      for (const std::size_t number : std::exchange(stack.written, {})) {
+        spills.push_back(place + number * line);
+      }
+      for (const std::size_t number : std::exchange(stack.read, {})) {
+        const NaiveRecord record = {memory::RecordKind::node, place + number * line, line, NaiveTest::none};
+        visits.push_back({record, StepCounts{}, {}, visits.back().treelet, std::exchange(spills, {})});
+      }
+    };
     std::optional<std::uint32_t> before;  // the node visited before
     StepCounts waiting;                   // steps for the next record
     bool any = false;                     // of them
     const auto take = [&](const NaiveRecord& of) {
-      visits.push_back({of, std::exchange(waiting, StepCounts{}), {}});
+      visits.push_back({of, std::exchange(waiting, StepCounts{}), {}, 0, std::exchange(spills, {})});
       any = false;
     };
     for (; at < words.size() && is_visit(step_of(words[at])); at += step_words(&words[at])) {
       const std::uint32_t operand = operand_of(words[at]);
       count(&words[at], counted);
       any = true;
-      const std::size_t visit = visits.size();
       std::vector<std::vector<NaiveRecord>> wishes = take_entry(operand, before, stack, entered);
+      moves();
+      const std::size_t visit = visits.size();
       const bool first = visits.empty();
       const std::uint32_t last = first ? 0 : visits.back().treelet;
       std::uint32_t treelet = last;
@@ -160,7 +181,25 @@ class NaiveSimtLog {
     if (any) {
       visits.push_back({std::nullopt, waiting, {}});
     }
-    return visits;
+    if (machine_.rt.stack > 0 || machine_.prefetch.stack > 0) {
+      push_entered(before, stack, entered);
+      while (ray != RayKind::shadow && stack.take()) {
+      }
+      moves();
+    }
+    return {visits, spills};
+  }
+  /// Bytes of a lane's place for its stack: of as many entries as there are levels below the root, times one
+  /// less than the most children of a branch.
+  [[nodiscard]] std::uint64_t stack_bytes() const {
+    std::uint64_t levels = 0;
+    std::uint64_t others = 0;
+    for (const accel::TopologyNode& node : log_.topology.nodes) {
+      levels = std::max<std::uint64_t>(levels, node.level - 1U);
+      others = std::max<std::uint64_t>(others, node.leaf ? 0 : node.count - 1);
+    }
+    const std::uint64_t line = machine_.reference_bytes();
+    return (levels * others * 8 + line - 1) / line * line;
   }
 
  private:
@@ -168,33 +207,46 @@ class NaiveSimtLog {
   [[nodiscard]] bool has_record(std::uint32_t number) const { return NaiveProgram::has_record(log_, number); }
   // The ray takes the node from its stack; what it wishes for then.
   std::vector<std::vector<NaiveRecord>> take_entry(std::uint32_t visited,
-                                                   std::optional<std::uint32_t>& before,
-                                                   std::vector<std::uint32_t>& stack,
+                                                   std::optional<std::uint32_t>& before, NaiveStack& stack,
                                                    std::span<const std::uint32_t>& entered) const {
     std::vector<std::vector<NaiveRecord>> wishes;
-    if (machine_.prefetch.stack == 0) {
+    if (machine_.prefetch.stack == 0 && machine_.rt.stack == 0) {
       return wishes;
     }
-    stack.erase(std::find(stack.begin(), stack.end(), visited), stack.end());
+    push_entered(before, stack, entered);
+    while (stack.take() != visited) {
+    }
     const auto& nodes = log_.topology.nodes;
     const auto is_child = [&](std::uint32_t branch) {
       return !nodes[branch].leaf && visited >= nodes[branch].first &&
              visited < nodes[branch].first + nodes[branch].count;
     };
     if (before && !is_child(*before)) {
-      for (auto at = stack.rbegin(); at != stack.rend() && wishes.size() < machine_.prefetch.stack; ++at) {
-        wishes.push_back({first_record(*at)});
+      for (const std::uint32_t waiting : stack.near()) {
+        if (wishes.size() < machine_.prefetch.stack) {
+          wishes.push_back({first_record(waiting)});
+        }
       }
     }
     before = visited;
-    if (!nodes[visited].leaf) {
-      const accel::EnteredChildren children(entered.front());
-      entered = entered.subspan(1);
-      for (std::uint32_t i = 1; i <= children.count(); ++i) {
-        stack.push_back(nodes[visited].first + children[children.count() - i]);
-      }
-    }
     return wishes;
+  }
+  // The branch visited before has been tested: the ray keeps the nearest of the children that it has entered,
+  // and pushes the others.
+  void push_entered(std::optional<std::uint32_t> before, NaiveStack& stack,
+                    std::span<const std::uint32_t>& entered) const {
+    if (!before || log_.topology.nodes[*before].leaf) {
+      return;
+    }
+    const accel::EnteredChildren children(entered.front());
+    entered = entered.subspan(1);
+    const std::uint32_t first = log_.topology.nodes[*before].first;
+    for (std::uint32_t i = children.count(); i > 1; --i) {
+      stack.push(first + children[i - 1]);
+    }
+    if (children.count() > 0) {
+      stack.nearest = first + children[0];
+    }
   }
   void wish_for(std::uint32_t treelet, std::vector<std::vector<NaiveRecord>>& wishes) const {
     wishes.emplace_back();

@@ -80,6 +80,9 @@ inline processors::machine::MachineConfig random_simt(Random& random,
     if (log.has_entered() && random() % 2 == 0) {
       machine.prefetch.stack = static_cast<std::uint32_t>(pick(random, 1, 6));
     }
+    if (log.has_entered() && machine.reference_bytes() >= stack_entry_bytes && random() % 2 == 0) {
+      rt.stack = static_cast<std::uint32_t>(pick(random, 1, 4));
+    }
     machine.prefetch.treelet = treelets && random() % 2 == 0;
     machine.prefetch.queue = static_cast<std::uint32_t>(pick(random, 1, random() % 2 == 0 ? 4 : 40));
   }
@@ -127,6 +130,7 @@ inline std::string describe_simt(const processors::machine::MachineConfig& machi
   value("hit_cycles", machine.cache.hit_cycles);
   value("ports", machine.simt.ports);
   value("mshrs", machine.simt.mshrs);
+  value("rt.stack", machine.rt.stack);
   value("prefetch.stack", machine.prefetch.stack);
   value("prefetch.treelet", machine.prefetch.treelet);
   value("queue", machine.prefetch.queue);

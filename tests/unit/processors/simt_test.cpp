@@ -72,6 +72,8 @@ void expect_laws(const WorkLog& log, const MachineConfig& machine, const Machine
     ASSERT_LE(counts.accesses, counts.records);
     ASSERT_LE(counts.rays, all_rays(node.steps));
     ASSERT_LE(counts.joined, node.references.all_hits());
+    ASSERT_LE(counts.fills, counts.spills);
+    ASSERT_TRUE(machine.rt.stack > 0 || counts.spills == 0);
     if (machine.rt.warps == 0) {
       ASSERT_EQ(counts.traces + counts.unit_cycles + counts.lanes_unit + counts.lanes_box, 0);
     }
@@ -84,7 +86,7 @@ void expect_laws(const WorkLog& log, const MachineConfig& machine, const Machine
     reads += cluster.interconnect.reads;
     written += cluster.interconnect.writes;
   }
-  ASSERT_EQ(written, writes);
+  ASSERT_EQ(written, writes + result.simt.counts().spills);
   std::int64_t asked = result.references().all_misses() + result.contexts.counts().issued;
   if (machine.l2.sharing == SecondLevel::private_caches) {
     ASSERT_EQ(result.l2.counters().references(), asked);
@@ -301,6 +303,74 @@ TEST(Simt, LanesThatShareNothingTakeTurnsAtTheCache) {
   }
 }
 
+// A ray that enters both children of `depth` branches, one below the other, and of each first the branch: it
+// visits all branches, then all leaves, of one entry each.
+WorkLog chain(std::uint32_t depth, RayKind kind) {
+  WorkLog log;
+  log.traversal = accel::Traversal::bvh_two;
+  log.width = log.height = 1;
+  log.primitives = 1;
+  log.texture_begin = {0};
+  log.topology.entries = {0};
+  LogRow& row = log.rows.emplace_back();
+  row.begin = {0};
+  row.entered_begin = {0};
+  row.words.push_back(make_word(Step::ray, ray_operand(kind, 0)));
+  accel::EnteredChildren both;
+  both.add(0);
+  both.add(1);
+  const auto node = [&](std::uint32_t first, std::uint32_t count, std::uint32_t level, bool leaf) {
+    log.topology.nodes.push_back({first, count, static_cast<std::uint8_t>(level), leaf});
+  };
+  node(1, 2, 1, false);
+  for (std::uint32_t level = 1; level <= depth; ++level) {  // its branch comes first, then its leaf
+    const std::uint32_t branch = 2 * level - 1;
+    node(level < depth ? branch + 2 : 0, level < depth ? 2 : 1, level + 1, level == depth);
+    node(0, 1, level + 1, true);
+    row.words.push_back(make_word(Step::branch, level == 1 ? 0 : branch - 2));
+    row.entered.push_back(both.word());
+  }
+  row.words.push_back(make_word(Step::leaf, 2 * depth - 1));
+  for (std::uint32_t level = kind == RayKind::shadow ? 0 : depth; level > 0; --level) {
+    row.words.push_back(make_word(Step::leaf, 2 * level));
+  }
+  row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  row.entered_begin.push_back(depth);
+  return log;
+}
+
+TEST(Simt, AStackBeyondTheChipIsWrittenOnceAndReadBackOnce) {
+  for (const std::int64_t depth : {1, 2, 9, 40}) {
+    for (const std::int64_t room : {0, 1, 3, 8, 64}) {
+      for (const std::int64_t line : {8, 32, 128}) {
+        for (const RayKind kind : {RayKind::camera, RayKind::shadow}) {
+          const std::int64_t hit = 3;
+          const std::int64_t test = 5;
+          MachineConfig machine = one_warp(1, hit, test);
+          machine.cache.cache.line = static_cast<std::uint32_t>(line);
+          machine.layout.node_bytes = machine.layout.primitive_bytes = 8;
+          machine.layout.entry_bytes = 4;
+          machine.rt.triangle_cycles = test;
+          machine.rt.stack = static_cast<std::uint32_t>(room);
+          const MachineResult result =
+              replay::replay(chain(static_cast<std::uint32_t>(depth), kind), machine);
+          const SimtCounts& counts = result.simt.nodes.at(0);
+          const bool shadow = kind == RayKind::shadow;
+          const std::int64_t leaves = shadow ? 1 : depth + 1;  // each has a list and a triangle
+          const std::int64_t spills = room == 0 ? 0 : std::max<std::int64_t>(0, depth - room) / (line / 8);
+          const std::int64_t fills = shadow ? 0 : spills;
+          SCOPED_TRACE(marti::test::describe_simt(machine));
+          EXPECT_EQ(counts.spills, spills);
+          EXPECT_EQ(counts.fills, fills);
+          EXPECT_EQ(result.clusters.at(0).interconnect.writes, spills);
+          EXPECT_EQ(counts.records, depth + 2 * leaves + fills);
+          EXPECT_EQ(counts.unit_cycles, (counts.records) * hit + (depth + leaves) * test);
+        }
+      }
+    }
+  }
+}
+
 // Rays that visit branches and leaves of one entry, with a surface point now and then.
 WorkLog walks(marti::test::Random& random) {
   using marti::test::pick;
@@ -460,6 +530,28 @@ TEST(Simt, RefusesWhatCannotBe) {
          m.kind = NodeKind::core;
        }},
       {"prefetch.stack", [](MachineConfig& m) { m.prefetch.stack = 1; }},  // of a log of an octree
+      {"rt.stack", [](MachineConfig& m) { m.rt.stack = most_stack_entries + 1; }},
+      {"rt.stack",
+       [](MachineConfig& m) {
+         m.rt.stack = 1;
+         m.rt.warps = 0;
+       }},
+      {"rt.stack",
+       [](MachineConfig& m) {
+         m.rt.stack = 1;
+         m.placement = Placement::replicated;
+       }},
+      {"rt.stack",
+       [](MachineConfig& m) {
+         m.rt.stack = 1;
+         m.simt.sector = 4;
+       }},
+      {"rt.stack",
+       [](MachineConfig& m) {
+         m.rt.stack = 1;
+         m.kind = NodeKind::core;
+       }},
+      {"rt.stack", [](MachineConfig& m) { m.rt.stack = 1; }},  // of a log of an octree
       {"prefetch.treelet", [](MachineConfig& m) { m.prefetch.treelet = true; }},
       {"rt.scheduler", [](MachineConfig& m) { m.rt.scheduler = RtScheduler::treelet; }},
       {"prefetch",
