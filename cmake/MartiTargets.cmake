@@ -18,6 +18,10 @@ if(MARTI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${MARTI_CCACHE}")
 endif()
 
+# All code may become part of the shared library (marti/CMakeLists.txt). Nobody puts other functions in the place of
+# ours, so they are called and inlined as in a program.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
 # Where the programs of the build tree find what they load while they run (studies/CMakeLists.txt).
 set(MARTI_MODULES "${PROJECT_BINARY_DIR}/modules")
 list(APPEND CMAKE_BUILD_RPATH "${MARTI_MODULES}")
@@ -26,7 +30,8 @@ list(APPEND CMAKE_BUILD_RPATH "${MARTI_MODULES}")
 # the sign of near-zero areas, and watertightness rests on those signs.
 add_library(marti_options INTERFACE)
 target_compile_options(marti_options INTERFACE
-  -Wall -Wextra -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast -Wno-psabi -ffp-contract=off)
+  -Wall -Wextra -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast -Wno-psabi -ffp-contract=off
+  -fno-semantic-interposition)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC bug 105329: false warnings about operator+ of std::string.
   target_compile_options(marti_options INTERFACE -Wno-restrict)

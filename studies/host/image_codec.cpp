@@ -101,6 +101,18 @@ void write(const std::string& file, const OIIO::ImageSpec& spec, const OIIO::Typ
   }
 }
 
+// The size of an image that can be a texture, or the result of a run.
+scenes::ImageSize checked_size(const OIIO::ImageSpec& spec, const std::string& label, const char* use) {
+  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
+      spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
+      std::int64_t{spec.width} * spec.height > most_pixels) {
+    throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
+                         std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
+                         " channels cannot be " + use);
+  }
+  return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
+}
+
 // An image file in memory, opened; its header has been read and is that of a possible texture.
 struct OpenImage {
   OpenImage(std::span<const std::byte> file, std::string_view name)
@@ -109,15 +121,7 @@ struct OpenImage {
     if (!in) {
       throw sim::UserError(label + ": not an image that can be read: " + OIIO::geterror());
     }
-    const OIIO::ImageSpec& spec = in->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 16 ||
-        spec.width > most_pixels_a_side || spec.height > most_pixels_a_side ||
-        std::int64_t{spec.width} * spec.height > most_pixels) {
-      throw sim::UserError(label + ": an image of " + std::to_string(spec.width) + " x " +
-                           std::to_string(spec.height) + " pixels and " + std::to_string(spec.nchannels) +
-                           " channels cannot be a texture");
-    }
-    size = {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
+    size = checked_size(in->spec(), label, "a texture");
   }
 
   WithoutLinesOfLibpng quiet;  // until `in` is gone
@@ -137,6 +141,19 @@ class OpenImageIO final : public ImageCodec {
     // Without a date the library writes that of today, and equal images would be different files.
     spec.attribute("DateTime", "1970:01:01 00:00:00");
     write(file, spec, OIIO::TypeDesc::FLOAT, samples.data());
+  }
+
+  [[nodiscard]] std::vector<float> read_exr(const std::string& file, scenes::ImageSize& size) const override {
+    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(file);
+    if (!in) {
+      throw sim::UserError(file + ": not an image that can be read: " + OIIO::geterror());
+    }
+    size = checked_size(in->spec(), file, "that of a run");
+    std::vector<float> samples(std::size_t{3} * size.width * size.height);
+    if (in->spec().nchannels != 3 || !in->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, samples.data())) {
+      throw sim::UserError(file + ": is not the image of a run: " + in->geterror());
+    }
+    return samples;
   }
 
   void write_png(const std::string& file, scenes::ImageSize size,

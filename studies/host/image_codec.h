@@ -33,6 +33,10 @@ class ImageCodec {
   virtual void write_exr(const std::string& file, scenes::ImageSize size,
                          std::span<const std::string> channels, std::span<const float> samples) const = 0;
 
+  /// The red, green and blue floats of each pixel of a file that write_exr() has written.
+  [[nodiscard]] virtual std::vector<float> read_exr(const std::string& file,
+                                                    scenes::ImageSize& size) const = 0;
+
   /// A PNG file of sRGB-encoded bytes: red, green, blue of each pixel.
   virtual void write_png(const std::string& file, scenes::ImageSize size,
                          std::span<const std::uint8_t> samples) const = 0;

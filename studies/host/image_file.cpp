@@ -94,6 +94,17 @@ void write_exr(const processors::program::Image& image, const std::filesystem::p
   codec().write_exr(file.string(), {image.width, image.height}, names, samples);
 }
 
+processors::program::Image read_exr(const std::filesystem::path& file) {
+  scenes::ImageSize size;
+  const std::vector<float> samples = codec().read_exr(file.string(), size);
+  processors::program::Image image{size.width, size.height, {}};
+  image.pixels.resize(samples.size() / 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = {samples[3 * i], samples[3 * i + 1], samples[3 * i + 2]};
+  }
+  return image;
+}
+
 void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
                     std::span<const std::vector<float>> channels, const std::filesystem::path& file) {
   std::vector<float> samples;

@@ -23,6 +23,9 @@ void load_image_library();
 /// files. Throws UserError when the file cannot be written.
 void write_exr(const processors::program::Image& image, const std::filesystem::path& file);
 
+/// Reads what write_exr() has written. Throws UserError for a file that is not such an image.
+[[nodiscard]] processors::program::Image read_exr(const std::filesystem::path& file);
+
 /// "3 of 256 pixels ...": how many have a channel that is infinite or NaN, which an EXR file holds unchanged
 /// and a PNG file as its brightest or darkest value; empty when no pixel has one.
 [[nodiscard]] std::string note_of_infinities(const processors::program::Image& image);

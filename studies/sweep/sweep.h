@@ -9,6 +9,7 @@
 
 #include "sim/config.h"
 #include "sim/memory_budget.h"
+#include "sim/work_meter.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/share.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -21,6 +22,8 @@ struct SweepOptions {
   bool terminal = false;            ///< progress as a bar
   bool quiet = false;               ///< no progress
   std::optional<Share> share{};     ///< times only this part of the machines
+  /// After its stop() the sweep throws sim::Stopped once the next result is saved. Null: nobody stops it.
+  const sim::WorkMeter* meter = nullptr;
 };
 
 /// What is known of the sweep before it runs, including what its store holds already. Writes nothing. Throws

@@ -1,0 +1,287 @@
+"""marti in Python: machines that trace rays, timed from a configuration.
+
+    import marti
+
+    result = marti.run("configs/marti.toml", machine__nodes=64)   # or {"machine.nodes": 64}
+    result.end                         # the frame time in ps, as an attribute
+    result.figures                     # all figures with unit and meaning, a DataFrame
+    result.image                       # linear RGB, an array of height x width x 3
+    result.report()                    # the page of `marti report`, shown in a notebook
+
+    sweep = marti.sweep("configs/marti.toml", axes={"machine.nodes": [4, 8, 16], "cache.size": ["8KiB", "16KiB"]})
+    sweep.points                       # a row for each machine, a DataFrame
+    sweep.best("end", budget=30)       # those that no other beats in cost and frame time
+
+    marti.open("out")                  # what a command has written: a Result, a Sweep or a Study
+
+Names, units and meanings of figures are those of `marti figures`, keys those of `marti config`. The work is done in
+this process, without the interpreter's lock, and Ctrl-C ends it.
+"""
+
+from __future__ import annotations
+
+import concurrent.futures
+import functools
+import html
+import json as _json
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+import weakref
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Union
+
+from . import _marti
+from ._marti import Error
+
+if TYPE_CHECKING:
+    import numpy
+    import pandas
+
+__all__ = ["Error", "Page", "Result", "Study", "Sweep", "open", "run", "sweep"]
+
+Path = Union[str, "os.PathLike[str]", None]
+
+#: How often a share of a sweep is asked for again that a worker has not brought.
+ATTEMPTS = 3
+
+
+def run(config: Path = None, settings: Mapping[str, Any] | None = None, /, **more: Any) -> Result:
+    """One frame on one machine.
+
+    config: a TOML file; None: all keys have their defaults. Settings override the file: {"machine.nodes": 64}, or as
+    arguments with two underscores for the dot, machine__nodes=64. Error if a setting or the file is wrong."""
+    return Result(_marti.run(_file(config), _assignments(settings, more)))
+
+
+def sweep(
+    config: Path = None,
+    axes: Mapping[str, Iterable[Any]] | Iterable[str] = (),
+    settings: Mapping[str, Any] | None = None,
+    *,
+    directory: Path = None,
+    threads: int = 0,
+    share: str = "",
+    executor: concurrent.futures.Executor | None = None,
+    shares: int = 8,
+    **more: Any,
+) -> Sweep:
+    """Every machine of the configuration's [sweep] and of these axes, which are all crossed.
+
+    axes: {"machine.nodes": [4, 8]}, or texts as after --axis, ["machine.nodes=4..64:x2"]. directory: where the results
+    are kept, so that the same call goes on with them; None: they last as long as the Sweep. threads: machines timed at
+    a time; 0: as many as the computer has. share: "3/8" times only the third of eight parts of the machines.
+
+    executor: any of concurrent.futures, Dask or mpi4py.futures, whose workers time `shares` parts of the machines. A
+    part that a worker does not bring is asked for again. The workers must see the configuration and the directory."""
+    assignments = _assignments(settings, more)
+    texts = [f"{key}={','.join(map(_quoted, values))}" for key, values in axes.items()] if isinstance(
+        axes, Mapping
+    ) else list(axes)
+    if executor is None:
+        return Sweep(_marti.sweep(_file(config), texts, assignments, _file(directory), threads, share))
+    if share:
+        raise ValueError("share: the executor's workers have the shares; leave it out")
+    place = os.path.abspath(tempfile.mkdtemp(prefix="marti-") if directory is None else _file(directory))
+    source = os.path.abspath(_file(config)) if config is not None else ""
+    try:
+        _time_shares(executor, shares, (source, texts, assignments, place, threads))
+        whole = Sweep(_marti.sweep(source, texts, assignments, place, threads, ""))
+    except BaseException:
+        if directory is None:
+            shutil.rmtree(place, ignore_errors=True)
+        raise
+    if directory is None:
+        weakref.finalize(whole, shutil.rmtree, place, ignore_errors=True)
+    return whole
+
+
+def open(directory: Path) -> Result | Sweep | Study:
+    """What `marti run -o`, `marti sweep -o` or `marti study ... -o` has written into this directory."""
+    found = _marti.open(_file(directory))
+    return {_marti.Result: Result, _marti.Sweep: Sweep, _marti.Study: Study}[type(found)](found)
+
+
+class Page:
+    """A page of `marti report`: one HTML file that loads nothing."""
+
+    def __init__(self, text: str):
+        self.html = text
+
+    def save(self, file: Path) -> None:
+        pathlib.Path(file).write_text(self.html, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.html)}" sandbox="allow-scripts" '
+            'style="width: 100%; height: 800px; border: 0"></iframe>'
+        )
+
+
+class _Shown:
+    """What all results have: a summary and a page."""
+
+    def __init__(self, own: Any):
+        self._own = own
+
+    @property
+    def summary(self) -> str:
+        """As the command prints it; of what was opened, the answer alone."""
+        return self._own.summary()
+
+    def report(self) -> Page:
+        """The page of `marti report`. A notebook shows it; Page.save() writes it."""
+        return Page(self._own.report())
+
+    def __repr__(self) -> str:
+        return f"<marti.{type(self).__name__}: {self.summary.split(chr(10))[0]}>"
+
+
+class Result(_Shown):
+    """What one machine took for one frame. Each figure of `marti figures` is an attribute: result.end in ps,
+    result.hit_ratio as a fraction; a figure that the machine does not have is None."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self._own.figure(name)
+        except Error as error:
+            raise AttributeError(str(error)) from None
+
+    def __getitem__(self, name: str) -> Any:
+        """A figure, those of the frame too: result["frame.camera_rays"]. Error for a name that no machine has."""
+        return self._own.figure(name)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(row[0] for row in self._own.figures().rows if "." not in row[0])]
+
+    @functools.cached_property
+    def figures(self) -> pandas.DataFrame:
+        """value, unit and meaning of each figure that the machine has, by name."""
+        return _frame(self._own.figures()).set_index("figure")
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """Keys and values of the configuration, as a file has them."""
+        return self._own.settings()
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """The whole result, as docs/internals/result-json.md describes it."""
+        return _json.loads(self._own.json())
+
+    @property
+    def image(self) -> numpy.ndarray:
+        """Linear RGB as float32, height x width x 3, rows from the top."""
+        return self._own.image()
+
+    def save(self, directory: Path) -> None:
+        """Writes what `marti run -o` writes."""
+        self._own.save(_file(directory))
+
+
+class Sweep(_Shown):
+    """The points of a sweep."""
+
+    @functools.cached_property
+    def points(self) -> pandas.DataFrame:
+        """A row for each point that has been timed: its axes, its cost and all figures; units in .attrs["units"]."""
+        return _frame(self._own.points())
+
+    @property
+    def axes(self) -> list[str]:
+        """The columns of points that are axes."""
+        return self._own.axes()
+
+    @property
+    def directory(self) -> str:
+        return self._own.directory()
+
+    @property
+    def complete(self) -> bool:
+        """Whether all points have been timed: not while other shares are missing."""
+        return self._own.complete()
+
+    @property
+    def tables(self) -> dict[str, pandas.DataFrame]:
+        """The tables of the sweep's question."""
+        return {table.name: _frame(table) for table in self._own.tables()}
+
+    def best(self, figure: str = "end", budget: float | None = None) -> pandas.DataFrame:
+        """The points that no other beats in cost and in the figure, by cost; the last column marks the best that costs
+        no more than the budget."""
+        return _frame(self._own.best(figure, budget))
+
+
+class Study(_Shown):
+    """The tables of `marti study`."""
+
+    @property
+    def tables(self) -> dict[str, pandas.DataFrame]:
+        return {table.name: _frame(table) for table in self._own.tables()}
+
+
+def _file(name: Path) -> str:
+    return "" if name is None else os.fspath(name)
+
+
+def _text(value: Any) -> str:
+    """As a value stands after --set key=."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Iterable):
+        return "[" + ", ".join(_json.dumps(each) if isinstance(each, str) else _text(each) for each in value) + "]"
+    return str(value)
+
+
+def _quoted(value: Any) -> str:
+    """As a value stands in a list after --axis key=: with quotes, as in CSV, where it has a comma."""
+    text = _text(value)
+    return '"' + text.replace('"', '""') + '"' if "," in text or '"' in text else text
+
+
+def _assignments(settings: Mapping[str, Any] | None, more: Mapping[str, Any]) -> list[str]:
+    given = {**(settings or {}), **{name.replace("__", "."): value for name, value in more.items()}}
+    return [f"{key}={_text(value)}" for key, value in given.items()]
+
+
+def _frame(table: Any) -> pandas.DataFrame:
+    import pandas
+
+    frame = pandas.DataFrame(table.rows, columns=[column.name for column in table.columns])
+    frame.attrs["title"] = table.title
+    frame.attrs["units"] = {column.name: column.unit for column in table.columns}
+    frame.attrs["meanings"] = {column.name: column.meaning for column in table.columns}
+    return frame
+
+
+def _time_share(work: tuple[str, list[str], list[str], str, int], share: str) -> None:
+    config, axes, assignments, directory, threads = work
+    _marti.sweep(config, axes, assignments, directory, threads, share)
+
+
+def _time_shares(executor: concurrent.futures.Executor, shares: int, work: tuple[str, list[str], list[str], str, int]) -> None:
+    """Has the executor time all shares. What is wrong with the input is an Error at once; a share that is lost with its
+    worker is asked for again."""
+    attempts = dict.fromkeys((f"{number}/{shares}" for number in range(1, shares + 1)), 1)
+    waiting = {executor.submit(_time_share, work, share): share for share in attempts}
+    while waiting:
+        done, _ = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
+        for future in done:
+            share = waiting.pop(future)
+            failure = future.exception()
+            if failure is None:
+                continue
+            if isinstance(failure, Error) or attempts[share] == ATTEMPTS:
+                for other in waiting:
+                    other.cancel()
+                raise failure
+            attempts[share] += 1
+            waiting[executor.submit(_time_share, work, share)] = share
+        if sys.stderr.isatty():
+            end = "" if waiting else "\n"
+            print(f"\r{shares - len(waiting)} of {shares} shares", end=end, file=sys.stderr, flush=True)

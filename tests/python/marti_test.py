@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""marti_test.py PROGRAM SOURCE: import marti says what the program says, ends on Ctrl-C, and names what is wrong."""
+
+import concurrent.futures
+import csv
+import json
+import multiprocessing
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import marti
+import numpy
+import pandas
+
+PROGRAM = sys.argv[1]
+SOURCE = pathlib.Path(sys.argv[2])
+SMALL = {"scene.source": "tetra:3", "image.width": 32, "image.height": 24}
+AXES = {"machine.nodes": [1, 2, 4], "cache.size": ["1KiB", "4KiB"]}
+
+
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+
+def given(settings):
+    return [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+
+
+def axes_given(axes):
+    return [word for key, values in axes.items() for word in ("--axis", f"{key}={','.join(map(str, values))}")]
+
+
+def ends_once(work, marker):
+    """Ends the worker process the first time that any does this."""
+    try:
+        os.close(os.open(marker, os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return work()
+    os._exit(9)
+
+
+class OneByOne(concurrent.futures.Executor):
+    """An executor whose workers are a process each, so that the end of one is not that of the others. The first ends."""
+
+    def __init__(self, marker):
+        self.marker = marker
+
+    def submit(self, function, /, *arguments):
+        future = concurrent.futures.Future()
+
+        def wait():
+            with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+                try:
+                    future.set_result(pool.submit(ends_once, Call(function, arguments), self.marker).result())
+                except Exception as failure:
+                    future.set_exception(failure)
+
+        threading.Thread(target=wait).start()
+        return future
+
+
+class Call:
+    def __init__(self, function, arguments):
+        self.function, self.arguments = function, arguments
+
+    def __call__(self):
+        return self.function(*self.arguments)
+
+
+class Runs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.config = SOURCE / "configs" / "marti.toml"
+        cls.result = marti.run(cls.config, SMALL, machine__nodes=4)
+        cls.printed = json.loads(program("run", cls.config, "--json", *given({**SMALL, "machine.nodes": 4})))
+
+    def test_every_figure_is_that_of_the_program(self):
+        machine, frame = self.printed["figures"]["machine"], self.printed["figures"]["frame"]
+        texts = {"scene", "image_hash", "hit_hash"}  # which are no figures
+        values = {**machine, **{"frame." + name: value for name, value in frame.items() if name not in texts}}
+        self.assertEqual(dict(self.result.figures["value"]), values)
+        for name, value in machine.items():
+            self.assertEqual(getattr(self.result, name), value, name)
+            self.assertEqual(type(self.result[name]), type(value), name)
+        self.assertEqual(self.result["frame.camera_rays"], 32 * 24)
+        self.assertEqual(self.result.figures.loc["end", "unit"], "ps")
+        self.assertIn("end", dir(self.result))
+        self.assertIsNone(self.result.simt_rays)
+        self.assertEqual(self.result.settings["machine.nodes"], "4")
+
+    def test_json_and_summary_are_those_of_the_program(self):
+        def without_advice(result):
+            result["machine"].pop("what_helps")  # as far as the time went
+            return result
+
+        self.assertEqual(without_advice(self.result.json), without_advice(dict(self.printed)))
+        self.assertIn("frame time", self.result.summary)
+        self.assertTrue(repr(self.result).startswith("<marti.Result: answer"))
+
+    def test_keys_may_be_arguments(self):
+        result = marti.run(machine__nodes=2, scene__source="tetra:2", image__width=8, image__height=8)
+        self.assertEqual(result.settings["machine.nodes"], "2")
+        self.assertEqual(result["frame.camera_rays"], 64)
+
+    def test_what_is_saved_opens_as_it_was(self):
+        with tempfile.TemporaryDirectory() as directory:
+            self.result.save(directory)
+            opened = marti.open(directory)
+            pandas.testing.assert_frame_equal(opened.figures, self.result.figures)
+            self.assertEqual(opened.image.shape, (24, 32, 3))
+            self.assertEqual(opened.image.dtype, numpy.float32)
+            numpy.testing.assert_array_equal(opened.image, self.result.image)
+            self.assertGreater(self.result.image.max(), 0.1)
+            self.assertEqual(opened.report().html, self.result.report().html)
+            with self.assertRaisesRegex(marti.Error, "already"):
+                opened.save(directory)
+
+    def test_the_page_is_shown_in_notebooks(self):
+        page = self.result.report()
+        self.assertTrue(page.html.startswith("<!DOCTYPE html>"))
+        self.assertIn("<iframe srcdoc=", page._repr_html_())
+
+    def test_errors_have_file_line_and_key(self):
+        with tempfile.TemporaryDirectory() as directory:
+            config = pathlib.Path(directory, "wrong.toml")
+            config.write_text("[machine]\nnodes = 4\n\n[cache]\nsize = \"3 apples\"\n")
+            with self.assertRaises(marti.Error) as caught:
+                marti.run(config)
+            error = pickle.loads(pickle.dumps(caught.exception))
+            self.assertEqual((error.file, error.line, error.key), (str(config), 5, "cache.size"))
+            self.assertIsInstance(error, ValueError)
+        with self.assertRaises(marti.Error) as caught:
+            marti.run(machine__nodes=0)
+        self.assertEqual((caught.exception.file, caught.exception.line, caught.exception.key),
+                         (None, None, "machine.nodes"))
+        for wrong, words in ((lambda: marti.run("missing.toml"), "no such file"),
+                             (lambda: marti.run(machine__node=3), "machine.nodes"),
+                             (lambda: self.result["hit_rati"], "hit_ratio"),
+                             (lambda: marti.open("missing"), "no such directory"),
+                             (lambda: marti.open(SOURCE), "expected is the directory")):
+            with self.assertRaisesRegex(marti.Error, words):
+                wrong()
+        with self.assertRaisesRegex(AttributeError, "hit_ratio"):
+            self.result.hit_rati
+
+    def test_ctrl_c_ends_the_work(self):
+        timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        began = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            marti.run(scene__source="teapot:20", image__width=4096, image__height=4096, machine__nodes=64)
+        self.assertLess(time.monotonic() - began, 20)
+        self.assertEqual(marti.run(None, SMALL).end, marti.run(None, SMALL).end)
+
+    def test_other_threads_go_on_meanwhile(self):
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            runs = [pool.submit(marti.run, self.config, SMALL, machine__nodes=4) for _ in range(4)]
+            self.assertEqual({run.result().end for run in runs}, {self.result.end})
+
+
+class Sweeps(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.config = SOURCE / "configs" / "marti.toml"
+        cls.made = tempfile.TemporaryDirectory()
+        cls.directory = pathlib.Path(cls.made.name, "program")
+        program("sweep", cls.config, "-o", cls.directory, *given(SMALL), *axes_given(AXES))
+        cls.sweep = marti.sweep(cls.config, AXES, SMALL)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.made.cleanup()
+
+    def same(self, sweep):
+        with open(self.directory / "points.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(sweep.points.columns), list(rows[0]))
+        self.assertEqual(len(sweep.points), 6)
+        for name in sweep.points.columns:
+            for row, value in zip(rows, sweep.points[name]):
+                if isinstance(value, str):
+                    self.assertEqual(row[name], value, name)
+                else:
+                    self.assertEqual(float(row[name]) if row[name] else None, None if pandas.isna(value) else value, name)
+
+    def test_points_are_those_of_the_program(self):
+        self.same(self.sweep)
+        self.same(marti.open(self.directory))
+        self.assertEqual(self.sweep.axes, ["machine.nodes", "cache.size"])
+        self.assertTrue(self.sweep.complete)
+        self.assertEqual(self.sweep.points.attrs["units"]["end"], "ps")
+        self.assertEqual(self.sweep.best("end", budget=30)["machine.nodes"].max(), 4)
+        self.assertIn("<!DOCTYPE html>", self.sweep.report().html)
+
+    def test_its_own_directory_goes_with_the_sweep(self):
+        sweep = marti.sweep(self.config, {"machine.nodes": [1, 2]}, SMALL)
+        place = sweep.directory
+        self.assertTrue(os.path.isdir(place))
+        del sweep
+        self.assertFalse(os.path.exists(place))
+
+    def test_shares_are_merged_and_a_lost_one_is_asked_for_again(self):
+        with tempfile.TemporaryDirectory() as directory:
+            marker = os.path.join(directory, "one worker has ended")
+            place = os.path.join(directory, "out")
+            sweep = marti.sweep(self.config, AXES, SMALL, directory=place, executor=OneByOne(marker), shares=3)
+            self.assertTrue(os.path.exists(marker))
+            self.same(sweep)
+            self.assertFalse([name for name in os.listdir(place) if "part" in name])
+
+    def test_what_is_wrong_for_all_workers_is_told_once(self):
+        with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+            with self.assertRaisesRegex(marti.Error, "machine.nodes"):
+                marti.sweep(self.config, {"machine.nodes": [0]}, SMALL, executor=pool, shares=2)
+
+    def test_dask_is_an_executor(self):
+        if not os.environ.get("MARTI_LONG_TESTS"):
+            self.skipTest("Dask takes half a minute; ./test --full asks for it")
+        try:
+            import distributed
+        except ImportError:
+            self.skipTest("Dask is not installed (Debian: python3-distributed)")
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+            with distributed.Client(cluster) as client, tempfile.TemporaryDirectory() as directory:
+                self.same(marti.sweep(self.config, AXES, SMALL, directory=directory, executor=client.get_executor(),
+                                      shares=3))
+
+    def test_names_with_commas_and_lists(self):
+        self.assertEqual(marti._quoted("a,b.obj"), '"a,b.obj"')
+        self.assertEqual(marti._text(["leaving", 1, True]), '["leaving", 1, true]')
+
+
+class Studies(unittest.TestCase):
+    def test_tables_of_a_study(self):
+        with tempfile.TemporaryDirectory() as directory:
+            program("study", "operations", "-o", directory, "--set", "scene.source=tetra:2", "--set", "image.width=8",
+                    "--set", "image.height=8")
+            study = marti.open(directory)
+            self.assertTrue(study.tables)
+            for name, table in study.tables.items():
+                self.assertEqual(len(table), len(pandas.read_csv(pathlib.Path(directory, name + ".csv"))), name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
