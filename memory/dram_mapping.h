@@ -38,6 +38,9 @@ class DramMapping {
             .bank = group * banks_ + value(DramField::bank, address),
             .row = value(DramField::row, address)};
   }
+  /// The value of one field: within its rank, bank group or stack, as simulators that are given such fields
+  /// count.
+  [[nodiscard]] std::uint32_t field(DramField field, Address address) const { return value(field, address); }
   [[nodiscard]] std::uint32_t channel(Address address) const { return value(DramField::channel, address); }
 
   /// Bytes in a row that are in the same row of the same channel.

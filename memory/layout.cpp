@@ -69,6 +69,17 @@ void Layout::add_room(std::uint64_t bytes, std::uint64_t alignment) {
   end_ = room_ + bytes;
 }
 
+std::optional<RecordKind> Layout::kind_at(Address address) const {
+  const Address records_end = room_ != 0 ? room_ : end_;
+  std::optional<RecordKind> kind;
+  for (std::size_t k = 0; k < record_kinds && address < records_end; ++k) {
+    if (sections_[k].base <= address && section_bytes(static_cast<RecordKind>(k)) > 0) {
+      kind = static_cast<RecordKind>(k);
+    }
+  }
+  return kind;
+}
+
 std::uint64_t Layout::database_bytes() const {
   std::uint64_t sum = 0;
   for (std::size_t kind = 0; kind < record_kinds; ++kind) {

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -85,6 +86,9 @@ class Layout {
   void add_room(std::uint64_t bytes, std::uint64_t alignment);
   /// Where that begins.
   [[nodiscard]] Address room() const { return room_; }
+  /// The kind of the record at an address, or before it where there is a gap; std::nullopt behind all
+  /// records.
+  [[nodiscard]] std::optional<RecordKind> kind_at(Address address) const;
   /// One past the last address, frame buffer and room included.
   [[nodiscard]] Address end() const { return end_; }
   /// Bytes of all sections except the frame buffer: the size of one copy of the database.

@@ -9,11 +9,11 @@ namespace marti::processors::path {
 
 WatchedMemory::WatchedMemory(const machine::MachineConfig& config, const memory::InterconnectSite& site,
                              PathRecorder& recorder)
-    : site_(site),
+    : PassedOn(node::make_memory_system(config, {site.engine, *this, site.reply_class, site.first_component,
+                                                 site.ports, site.memory_class})),
+      site_(site),
       recorder_(recorder),
-      memory_(node::make_memory_system(config, {site.engine, *this, site.reply_class, site.first_component,
-                                                site.ports, site.memory_class})),
-      course_(make_memory_course(config, *memory_, recorder.pieces())) {}
+      course_(make_memory_course(config, next(), recorder.pieces())) {}
 
 void WatchedMemory::ask(const memory::Transaction& transaction, bool write) {
   course_->ask(
@@ -22,24 +22,24 @@ void WatchedMemory::ask(const memory::Transaction& transaction, bool write) {
 
 void WatchedMemory::read(const memory::Transaction& transaction) {
   ask(transaction, false);
-  memory_->read(transaction);
+  next().read(transaction);
   course_->settle();
 }
 
 void WatchedMemory::write(const memory::Transaction& transaction) {
   ask(transaction, true);
-  memory_->write(transaction);
+  next().write(transaction);
   course_->settle();
 }
 
 void WatchedMemory::reply(std::uint32_t port) {
-  memory_->reply(port);
+  next().reply(port);
   course_->settle();
 }
 
 void WatchedMemory::proceed(std::uint32_t port, std::uint32_t sequence) {
   course_->proceed(port, sequence);
-  memory_->proceed(port, sequence);
+  next().proceed(port, sequence);
   course_->settle();
 }
 

@@ -38,8 +38,9 @@ MachineResult replay_flow(const program::WorkLog& log, const machine::MachineCon
     parts.networks.push_back(networks.back().get());
   }
   const std::unique_ptr<flow::FlowNodes> nodes = make(parts);
-  const Interconnects interconnects = connect_memory(
-      config, engine, static_cast<std::uint8_t>(flow::FlowEvent::memory), *nodes, options.path);
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(flow::FlowEvent::memory), *nodes, options.path,
+                     options.observer);
   for (const flow::FlowEvent c :
        {flow::FlowEvent::step, flow::FlowEvent::reply, flow::FlowEvent::read, flow::FlowEvent::done,
         flow::FlowEvent::wake, flow::FlowEvent::admit, flow::FlowEvent::memory}) {

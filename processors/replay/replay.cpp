@@ -145,8 +145,9 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   const std::unique_ptr<node::NodeArray> nodes = config.kind == machine::NodeKind::simt
                                                      ? simt::make_simt_nodes(input, engine, host)
                                                      : node::make_node_array(input, engine, host);
-  const Interconnects interconnects = connect_memory(
-      config, engine, static_cast<std::uint8_t>(node::EventClass::memory), *nodes, options.path);
+  const Interconnects interconnects =
+      connect_memory(config, engine, static_cast<std::uint8_t>(node::EventClass::memory), *nodes,
+                     options.path, options.observer);
   for (const node::EventClass c :
        {node::EventClass::step, node::EventClass::dispatch, node::EventClass::reply, node::EventClass::read,
         node::EventClass::write, node::EventClass::memory}) {

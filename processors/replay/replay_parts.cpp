@@ -3,11 +3,47 @@
 #include <algorithm>
 #include <numeric>
 
+#include "memory/passed_on.h"
 #include "processors/node/memory_system.h"
 #include "processors/path/watched_memory.h"
+#include "processors/walk/observer.h"
 #include "sim/mix.h"
 
 namespace marti::processors::replay {
+
+namespace {
+
+// A cluster's memory system with someone who hears what it is asked for.
+class HeardMemory final : public memory::PassedOn {
+ public:
+  HeardMemory(const machine::MachineConfig& config, const memory::InterconnectSite& site,
+              walk::Observer& observer)
+      : PassedOn(node::make_memory_system(config, site)),
+        site_(site),
+        ports_of_node_(config.ports_of_node()),
+        observer_(observer) {}
+
+  void read(const memory::Transaction& transaction) override {
+    tell(transaction, false);
+    PassedOn::read(transaction);
+  }
+  void write(const memory::Transaction& transaction) override {
+    tell(transaction, true);
+    PassedOn::write(transaction);
+  }
+
+ private:
+  void tell(const memory::Transaction& transaction, bool write) {
+    observer_.requested({site_.engine.now(), (site_.first_component + transaction.port) / ports_of_node_,
+                         transaction.address, transaction.bytes, write});
+  }
+
+  memory::InterconnectSite site_;
+  std::uint32_t ports_of_node_;
+  walk::Observer& observer_;
+};
+
+}  // namespace
 
 machine::PacketList packets_of(const program::WorkLog& log, const machine::MachineConfig& config,
                                std::uint64_t packet_seed) {
@@ -28,7 +64,8 @@ machine::PacketList packets_of(const program::WorkLog& log, const machine::Machi
 }
 
 Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& engine,
-                             std::uint8_t memory_class, node::NodeArray& nodes, path::PathRecorder* path) {
+                             std::uint8_t memory_class, node::NodeArray& nodes, path::PathRecorder* path,
+                             walk::Observer* observer) {
   Interconnects interconnects;
   std::vector<memory::Interconnect*> links;
   const std::uint32_t ports = config.nodes * config.ports_of_node();
@@ -42,6 +79,8 @@ Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& 
                                            config.kind == machine::NodeKind::simt};
     if (path != nullptr) {
       interconnects.push_back(std::make_unique<path::WatchedMemory>(config, site, *path));
+    } else if (observer != nullptr && observer->hears_requests()) {
+      interconnects.push_back(std::make_unique<HeardMemory>(config, site, *observer));
     } else {
       interconnects.push_back(node::make_memory_system(config, site));
     }

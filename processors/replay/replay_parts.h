@@ -21,10 +21,11 @@ namespace marti::processors::replay {
 using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
 
 /// Builds the memory systems of all clusters and connects the nodes to them. `memory_class` is the class of
-/// the memory systems' own events. `path`: null, or what watches the memory systems.
+/// the memory systems' own events. `path`: null, or what watches the memory systems. `observer`: null, or who
+/// may hear their requests; not with `path`.
 [[nodiscard]] Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& engine,
                                            std::uint8_t memory_class, node::NodeArray& nodes,
-                                           path::PathRecorder* path = nullptr);
+                                           path::PathRecorder* path, walk::Observer* observer);
 
 /// The part of the result that all schemes have: nodes after NodeArray::finish(), memory, database.
 [[nodiscard]] MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,

@@ -7,6 +7,7 @@
 //     frame; pieces of no length may be left out. Nodes come in any order.
 //   - `missed` for the cache misses of a pixel, at the latest when the pixel or ray is done with.
 //   - `began_packet` when a node begins a packet that the host gave it, by schemes that have packets.
+//   - `requested` by the memory system (replay_parts.h), for those who hear requests.
 //   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
 // Replay itself calls `begin` and `end`. Observing changes nothing that is simulated.
 #pragma once
@@ -55,6 +56,16 @@ struct PixelPlace {
   friend bool operator==(const PixelPlace&, const PixelPlace&) = default;
 };
 
+/// What a node asks of its cluster's memory: what leaves its caches, prefetches too, and posted writes. Of a
+/// distributed memory also what is in the node's own part of it.
+struct Request {
+  sim::Ticks time = 0;
+  std::uint32_t node = 0;
+  memory::Address address = 0;
+  std::uint32_t bytes = 0;
+  bool write = false;
+};
+
 /// Called from one thread during a replay. An exception thrown here ends the replay.
 class Observer {
  public:
@@ -71,6 +82,10 @@ class Observer {
   virtual void began_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/, sim::Ticks /*start*/) {}
   /// What the node does from now on is for this packet, which it has begun before.
   virtual void resumed_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/) {}
+  /// Whether `requested` is to be called.
+  [[nodiscard]] virtual bool hears_requests() const { return false; }
+  /// Called in the order of time.
+  virtual void requested(const Request& /*request*/) {}
   /// The frame took until `time`; called last.
   virtual void end(sim::Ticks /*time*/) {}
 };

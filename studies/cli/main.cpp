@@ -359,21 +359,23 @@ struct TraceArguments {
   std::string config;
   std::vector<std::string> assignments;
   std::string directory;
-  std::string format = "din";
   std::string limit = "4 GiB";
   run::TraceOptions options;
 };
 
 void add_trace_command(CLI::App& app, TraceArguments& arguments) {
-  CLI::App* trace = app.add_subcommand("trace", "Writes each node's references, for other cache simulators");
+  CLI::App* trace =
+      app.add_subcommand("trace", "Writes what nodes refer to, or ask of the memory, for other simulators");
   add_file(trace, arguments.config)->required();
   add_assignments(trace, arguments.assignments);
-  add_directory(trace, "-o,--output", arguments.directory, "directory for node-00000.din and so on")
+  add_directory(trace, "-o,--output", arguments.directory, "directory for the traces and trace.json")
       ->required();
   sim::Key format;
   format.type = sim::ValueType::choice;
-  format.choices = {"din"};
-  takes_value(trace->add_option("--format", arguments.format, "din: label and address, as Dinero reads them"),
+  format.choices = run::trace_formats();
+  takes_value(trace->add_option("--format", arguments.options.format,
+                                "din: what nodes refer to, before their caches; others: what leaves their "
+                                "caches, with times, as the simulator of this name reads it"),
               format);
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
       ->type_name("NODES")

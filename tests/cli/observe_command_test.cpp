@@ -6,7 +6,9 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/cli/printed_json.h"
@@ -147,6 +149,166 @@ TEST(TraceCommand, GivesAnotherSimulatorTheHitsAndMissesOfEachNode) {
     EXPECT_EQ(counts.writes, nodes[node]["writes"]);
     EXPECT_GT(counts.misses, 0);
   }
+}
+
+// What nodes ask of the memory, as an independent reader of each format finds it.
+struct Asked {
+  std::int64_t reads = 0;
+  std::int64_t writes = 0;
+  std::int64_t bytes = 0;
+  std::uint64_t last = 0;  // time or cycle
+  std::uint64_t sum = 0;   // of the addresses
+  bool in_order = true;
+
+  void add(bool write, std::uint64_t address, std::int64_t size, std::uint64_t time) {
+    ++(write ? writes : reads);
+    bytes += size;
+    sum += address;
+    in_order = in_order && time >= last;
+    last = time;
+  }
+};
+
+Asked read_lines(const fs::path& file, char separator, int access, int address, int time, int size,
+                 int base) {
+  Asked asked;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    std::vector<std::string> words;
+    std::istringstream parts(line);
+    for (std::string word; std::getline(parts, word, separator);) {
+      words.push_back(word);
+    }
+    const std::string& verb = words.at(static_cast<std::size_t>(access));
+    if (verb == "access") {
+      continue;  // the header of a CSV file
+    }
+    const auto number = [&](int column, int of_base) {
+      return column < 0 ? 0 : std::stoull(words.at(static_cast<std::size_t>(column)), nullptr, of_base);
+    };
+    const bool write = verb == "write" || verb == "ST" || verb == "W" || verb == "WRITE";
+    EXPECT_TRUE(write || verb == "read" || verb == "LD" || verb == "R" || verb == "READ") << line;
+    asked.add(write, number(address, base), static_cast<std::int64_t>(number(size, 10)), number(time, 10));
+  }
+  return asked;
+}
+
+std::uint64_t little_endian(const std::string& bytes, std::size_t at) {
+  std::uint64_t number = 0;
+  for (std::size_t k = 8; k-- > 0;) {
+    number = number << 8U | static_cast<unsigned char>(bytes.at(at + k));
+  }
+  return number;
+}
+
+Asked read_champsim(const std::string& bytes) {
+  Asked asked;
+  EXPECT_EQ(bytes.size() % 64, 0U);
+  for (std::size_t at = 0; at < bytes.size(); at += 64) {
+    const std::uint64_t written = little_endian(bytes, at + 16);
+    const std::uint64_t address = written != 0 ? written : little_endian(bytes, at + 32);
+    asked.add(written != 0, address - (std::uint64_t{1} << 32U), 0, 0);
+  }
+  return asked;
+}
+
+// Messages of Protocol Buffers with numbers and texts alone.
+Asked read_gem5(const std::string& bytes) {
+  Asked asked;
+  EXPECT_TRUE(bytes.starts_with("gem5"));
+  std::size_t at = 4;
+  const auto number = [&] {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      const auto byte = static_cast<unsigned char>(bytes.at(at++));
+      value |= static_cast<std::uint64_t>(byte & 0x7fU) << shift;
+      if (byte < 0x80) {
+        return value;
+      }
+    }
+  };
+  for (bool header = true; at < bytes.size(); header = false) {
+    const std::uint64_t size = number();
+    const std::size_t end = at + size;
+    std::map<std::uint64_t, std::uint64_t> fields;
+    while (at < end) {
+      const std::uint64_t tag = number();
+      if (tag % 8 == 2) {
+        const std::uint64_t length = number();
+        at += length;
+      } else {
+        fields[tag / 8] = number();
+      }
+    }
+    EXPECT_EQ(at, end);
+    if (header) {
+      EXPECT_EQ(fields[3], 1'000'000'000'000U);
+    } else {
+      asked.add(fields[2] == 4, fields[3], static_cast<std::int64_t>(fields[4]), fields[1]);
+    }
+  }
+  return asked;
+}
+
+TEST(TraceCommand, OtherSimulatorsReadWhatLeavesTheCaches) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "traces";
+  const std::string options = small_run +
+                              " --set machine.nodes=3 --set cache.size=2KiB --set cache.line=64"
+                              " --set memory.model=dram";
+  const nlohmann::json figures = printed_json("run " + options)["figures"]["machine"];
+  const auto trace = [&](const std::string& format) {
+    const Outcome outcome = marti("trace " + options + " --format " + format + " -o " + quoted(out));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+  };
+  for (const char* const format :
+       {"csv", "ramulator-loadstore", "ramulator-readwrite", "dramsim3", "gem5", "champsim"}) {
+    trace(format);
+  }
+  const Asked csv = read_lines(out / "requests.csv", ',', 2, 4, 0, 5, 10);
+  EXPECT_EQ(csv.reads, figures["interconnect_reads"]);
+  EXPECT_EQ(csv.writes, figures["interconnect_writes"]);
+  EXPECT_EQ(csv.bytes, figures["interconnect_bytes"]);
+  EXPECT_TRUE(csv.in_order);
+  EXPECT_LE(csv.last, figures["end"]);
+  EXPECT_GT(csv.last, 0U);
+
+  const Asked gem5 = read_gem5(read(out / "requests.ptrc"));
+  EXPECT_EQ(std::tie(gem5.reads, gem5.writes, gem5.bytes, gem5.sum, gem5.last, gem5.in_order),
+            std::tie(csv.reads, csv.writes, csv.bytes, csv.sum, csv.last, csv.in_order));
+
+  Asked champsim;
+  for (int node = 0; node < 3; ++node) {
+    const Asked of_node = read_champsim(read(out / ("node-0000" + std::to_string(node) + ".champsim")));
+    champsim.reads += of_node.reads;
+    champsim.writes += of_node.writes;
+    champsim.sum += of_node.sum;
+  }
+  EXPECT_EQ(std::tie(champsim.reads, champsim.writes, champsim.sum),
+            std::tie(csv.reads, csv.writes, csv.sum));
+
+  // Lines of 64 bytes are bursts; a pixel written may lie in two.
+  const Asked bursts = read_lines(out / "requests-loadstore.trace", ' ', 0, 1, -1, -1, 16);
+  const Asked places = read_lines(out / "requests-readwrite.trace", ' ', 0, -1, -1, -1, 10);
+  const Asked cycles = read_lines(out / "requests-dramsim3.trace", ' ', 1, 0, 2, -1, 16);
+  for (const Asked& each : {bursts, places, cycles}) {
+    EXPECT_EQ(each.reads, csv.reads);
+    EXPECT_GE(each.writes, csv.writes);
+    EXPECT_EQ(each.writes, bursts.writes);
+  }
+  EXPECT_EQ(bursts.sum, cycles.sum);
+  EXPECT_TRUE(cycles.in_order);
+  const std::string fields = read(out / "requests-readwrite.trace");
+  EXPECT_EQ(std::count(fields.begin(), fields.end(), ','), 5 * (bursts.reads + bursts.writes));
+
+  expect_refused("trace " + small_run + " --format ramulator-readwrite -o " + quoted(directory.path() / "b"),
+                 "memory.model");
+  expect_refused("trace " + small_run + " --format csv --limit 1KiB -o " + quoted(directory.path() / "b"),
+                 "--limit");
+  expect_refused("trace " + small_run + " --set machine.nodes=600 --format champsim -o " +
+                     quoted(directory.path() / "b"),
+                 "at most 512");
+  EXPECT_FALSE(fs::exists(directory.path() / "b"));
 }
 
 // The traces beside one another are of one machine, which trace.json names; none of another stays, and none

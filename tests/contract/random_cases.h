@@ -98,6 +98,8 @@ class Watcher final : public processors::walk::Observer {
     given_tree_ = input.config.build.sharing == processors::machine::Sharing::given;
     begun.resize(input.packets.size());
     packets_ = &input.packets;
+    asked_of.resize(input.config.clusters);
+    nodes_of_cluster_ = input.config.nodes;
     width_ = input.log.width;
     height_ = input.log.height;
   }
@@ -126,6 +128,14 @@ class Watcher final : public processors::walk::Observer {
     packet_of_[node] = packet;
   }
   void resumed_packet(std::uint32_t node, std::uint64_t packet) override { packet_of_[node] = packet; }
+  [[nodiscard]] bool hears_requests() const override { return true; }
+  void requested(const processors::walk::Request& request) override {
+    faults += request.time < asked_until_ ? 1 : 0;
+    asked_until_ = request.time;
+    memory::InterconnectStatistics& asked = asked_of[request.node / nodes_of_cluster_];
+    ++(request.write ? asked.writes : asked.reads);
+    asked.bytes += request.bytes;
+  }
   void end(sim::Ticks time) override { ended = time; }
 
   std::vector<sim::Ticks> until;
@@ -134,12 +144,15 @@ class Watcher final : public processors::walk::Observer {
   std::vector<int> begun;  // how often each packet
   std::map<std::pair<std::uint32_t, std::uint32_t>, sim::Ticks> pixel_time;
   std::int64_t pixel_misses = 0;
+  std::vector<memory::InterconnectStatistics> asked_of;  // of each cluster's memory
   sim::Ticks ended = -1;
   int faults = 0;
 
  private:
   std::vector<std::optional<std::uint64_t>> packet_of_;  // that each node is at work on
   bool given_tree_ = true;
+  std::uint32_t nodes_of_cluster_ = 1;
+  sim::Ticks asked_until_ = 0;
   const processors::machine::PacketList* packets_ = nullptr;
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;

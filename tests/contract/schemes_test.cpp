@@ -286,6 +286,18 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
       nobodys +=
           of(time, Activity::dispatch_wait) + of(time, Activity::message_wait) + of(time, Activity::idle);
     }
+    for (std::size_t cluster = 0; cluster < result.clusters.size(); ++cluster) {
+      const replay::ClusterResult& counted = result.clusters[cluster];
+      if (counted.distributed) {
+        const memory::DistributedStatistics& accesses = counted.distributed->accesses;
+        EXPECT_EQ(seen.asked_of[cluster].reads, accesses.local_reads + accesses.remote_reads);
+        EXPECT_EQ(seen.asked_of[cluster].writes, accesses.local_writes + accesses.remote_writes);
+      } else {
+        EXPECT_EQ(seen.asked_of[cluster].reads, counted.interconnect.reads);
+        EXPECT_EQ(seen.asked_of[cluster].writes, counted.interconnect.writes);
+        EXPECT_EQ(seen.asked_of[cluster].bytes, counted.interconnect.bytes);
+      }
+    }
     for (const int times : seen.begun) {
       EXPECT_EQ(times, result.flow.nodes.empty() ? 1 : 0) << "where rays move, nodes have no packets";
     }
