@@ -16,7 +16,7 @@ struct Examples {
   std::array<std::string_view, 2> calls;
 };
 
-constexpr std::array<Examples, 25> table = {{
+constexpr std::array<Examples, 26> table = {{
     {"run",
      {"marti run configs/marti.toml",
       "marti run configs/marti.toml --set machine.nodes=64 --set scene.source=mine.glb -o out"}},
@@ -49,6 +49,9 @@ constexpr std::array<Examples, 25> table = {{
     {"trace",
      {"marti trace configs/marti.toml -o out",
       "marti trace configs/marti.toml --nodes 0-3 --limit 1GiB -o out"}},
+    {"memory",
+     {"marti memory configs/dram.toml out/requests.csv",
+      "marti memory configs/dram.toml stream.trace --outstanding 64 --json"}},
     {"compare",
      {"marti compare out/small-cache out/large-cache",
       "marti compare out/run out/sweep -o out/compared.html"}},

@@ -39,6 +39,7 @@
 #include "studies/cli/sweep_command.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/page.h"
+#include "studies/driven/driven.h"
 #include "studies/error/error.h"
 #include "studies/error/error_keys.h"
 #include "studies/estimate/within.h"
@@ -395,6 +396,40 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   });
 }
 
+struct MemoryArguments {
+  std::string config;
+  std::string trace;
+  std::vector<std::string> assignments;
+  driven::DrivenChoices choices;
+};
+
+void add_memory_command(CLI::App& app, MemoryArguments& arguments) {
+  CLI::App* command = app.add_subcommand("memory", "Drives a memory by itself with a trace of requests");
+  add_file(command, arguments.config)->required();
+  command
+      ->add_option("TRACE", arguments.trace,
+                   "requests, as CSV, or as DRAMsim3, Ramulator 2 (LoadStoreTrace) or gem5 read them")
+      ->type_name("FILE")
+      ->required();
+  add_assignments(command, arguments.assignments);
+  constexpr std::int64_t most_outstanding = 4096;
+  takes_value(command
+                  ->add_option("--outstanding", arguments.choices.outstanding,
+                               "reads of a node under way at a time (default: 16)")
+                  ->type_name("N"),
+              integer_key(1, most_outstanding));
+  command->add_flag("--json", arguments.choices.json, "prints the figures as JSON");
+  command->callback([&] {
+    sim::Config config = keys::read_config(run::run_schema(), arguments.config, arguments.assignments);
+    sim::WorkMeter meter;
+    std::optional<progress::ShownMeter> shown(std::in_place, meter);
+    const std::string text = sim::with_places(
+        config, [&] { return driven::drive(config, arguments.trace, arguments.choices, &meter); });
+    shown.reset();  // before anything is printed
+    print(text);
+  });
+}
+
 struct CompareArguments {
   std::string a;
   std::string b;
@@ -584,6 +619,9 @@ int parse_and_run(int argc, char** argv) {
 
   TraceArguments trace_arguments;
   add_trace_command(app, trace_arguments);
+
+  MemoryArguments memory_arguments;
+  add_memory_command(app, memory_arguments);
 
   CompareArguments compare_arguments;
   add_compare_command(app, compare_arguments);

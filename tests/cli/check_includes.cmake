@@ -46,6 +46,7 @@ room(studies/helps figures keys)
 room(studies/run figures helps host keys run/plan run/record)
 room(studies/run/trace host keys run run/record tables)
 room(studies/show figures helps host keys run run/plan run/record tables)
+room(studies/driven figures keys run show tables)
 room(studies/estimate figures keys run show tables)
 room(studies/sweep/plan figures host keys run tables)
 room(studies/sweep/store figures host keys run sweep/plan tables)
@@ -64,7 +65,7 @@ room(studies/schemes figures keys paper run tables)
 room(studies/stability keys run tables)
 room(studies/error estimate figures host keys run tables)
 room(studies/explore estimate figures host keys progress report/model report/page report/plots report/read run show tables)
-room(studies/cli compare error estimate explore figures frames host keys operations paper progress report run run/plan run/trace schemes show
+room(studies/cli compare driven error estimate explore figures frames host keys operations paper progress report run run/plan run/trace schemes show
      stability sweep sweep/plan sweep/store tables)
 
 # A header pattern and the pattern of the files that may include it. C++'s own headers, which anyone may

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/printed_json.h"
@@ -309,6 +310,76 @@ TEST(TraceCommand, OtherSimulatorsReadWhatLeavesTheCaches) {
                      quoted(directory.path() / "b"),
                  "at most 512");
   EXPECT_FALSE(fs::exists(directory.path() / "b"));
+}
+
+// A memory by itself reads what `marti trace` writes. Where times count, it does what it did in the run.
+TEST(MemoryCommand, ServesTracesOfAllForms) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "traces";
+  const std::string options =
+      small_run + " --set machine.nodes=3 --set cache.line=64 --set memory.model=dram";
+  const nlohmann::json run = printed_json("run " + options)["figures"]["machine"];
+  for (const char* const format : {"csv", "ramulator-loadstore", "dramsim3", "gem5"}) {
+    ASSERT_EQ(marti("trace " + options + " --format " + format + " -o " + quoted(out)).status, 0) << format;
+  }
+  const auto served = [&](const char* file, const std::string& more = "") {
+    return printed_json("memory " + shipped("marti.toml") + " " + quoted(out / file) +
+                        " --set machine.nodes=3 --set cache.line=64 --set memory.model=dram" + more);
+  };
+  const nlohmann::json csv = served("requests.csv");
+  for (const char* const figure : {"interconnect_reads", "interconnect_writes", "interconnect_bytes",
+                                   "dram_row_hits", "dram_row_conflicts", "interconnect_wait_sum"}) {
+    EXPECT_EQ(csv["figures"][figure], run[figure]) << figure;
+  }
+  EXPECT_EQ(csv["latency"]["waited_for_a_place"], 0);
+  for (const char* const file : {"requests-dramsim3.trace", "requests.ptrc"}) {
+    const nlohmann::json timed = served(file);
+    EXPECT_EQ(timed["figures"]["interconnect_reads"], run["interconnect_reads"]) << file;
+    EXPECT_TRUE(timed["trace"]["timed"]) << file;
+  }
+  const nlohmann::json one = served("requests-loadstore.trace", " --outstanding 1");
+  const nlohmann::json many = served("requests-loadstore.trace", " --outstanding 64");
+  EXPECT_EQ(one["figures"]["interconnect_reads"], many["figures"]["interconnect_reads"]);
+  EXPECT_GT(one["figures"]["end"], many["figures"]["end"]);
+  EXPECT_LT(one["latency"]["mean"], many["latency"]["mean"]);
+  const Outcome text = marti("memory " + shipped("marti.toml") + " " + quoted(out / "requests.csv") +
+                             " --set machine.nodes=3");
+  EXPECT_EQ(text.status, 0) << text.output;
+  EXPECT_TRUE(says(text, "answer ")) << text.output;
+  EXPECT_TRUE(says(text, "bandwidth ")) << text.output;
+}
+
+TEST(MemoryCommand, SaysWhatIsWrongWithATrace) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "wrong.trace";
+  for (const auto& [content, complaint] : std::vector<std::pair<std::string, std::string>>{
+           {"", "is empty"},
+           {"hello\n", "is no trace of requests"},
+           {"0x40 READ 10\n0x40 READ 9\n", "wrong.trace:2: the time is less"},
+           {"0x40 READ 10\n0x40 FETCH 12\n", "wrong.trace:2: is not like"},
+           {"LD 0x40\nLD\n", "wrong.trace:2: is not like"},
+           {"LD 0xffffffffffffffff\n", "beyond 2^48"},
+           {"LD 0x1ffffffffffffffff\n", "is not like"},
+           {"0x40 READ 99999999999999999\n", "beyond 2^62"},
+           {"time_ps,access\n1,read\n", "is no trace of requests"},
+           {"time_ps,access,address\n1,read\n", "wrong.trace:2: address is no number"},
+           {"time_ps,access,address\n-1,read,0\n", "wrong.trace:2: time_ps is no number"},
+           {"time_ps,node,access,address\n1,16,read,0\n", "beyond machine.nodes"},
+           {"time_ps,access,address,bytes\n1,read,0,0\n", "has 0 bytes"},
+           {std::string(5000, 'x'), "more than 4,096 bytes"},
+           {"gem5\x02\x08", "ends within its header"},
+           {std::string("gem5\x01\x08\x02\x10\x63", 9), "neither gem5's ReadReq"},
+       }) {
+    std::ofstream(file, std::ios::binary) << content;
+    expect_refused("memory " + shipped("marti.toml") + " " + quoted(file), complaint);
+  }
+  expect_refused("memory " + shipped("marti.toml") + " " + quoted(directory.path()),
+                 "no trace that can be read");
+  std::ofstream(file) << "LD 0\n";
+  expect_refused("memory " + shipped("marti.toml") + " " + quoted(file) + " --set machine.scheme=space",
+                 "shared memory");
+  expect_refused("memory " + shipped("marti.toml") + " " + quoted(file) + " --outstanding 0",
+                 "--outstanding");
 }
 
 // The traces beside one another are of one machine, which trace.json names; none of another stays, and none

@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "processors/program/ray_tree.h"
+#include "processors/replay/driven_memory.h"
 #include "tests/contract/random_cases.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"
@@ -317,6 +318,48 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
     (void)replay::replay(c.log, c.machine, c.options);
     EXPECT_EQ(seen.states, stepped.states);
     EXPECT_EQ(seen.pixel_time, stepped.pixel_time);
+  });
+}
+
+// A shared memory that is asked for the same at the same times does the same, whoever asks.
+TEST_P(Schemes, AMemoryDrivenByWhatItsNodesAskedForDoesWhatItDid) {
+  class Listener final : public processors::walk::Observer {
+   public:
+    void spent(std::uint32_t, NodeState, sim::Ticks, sim::Ticks, PixelPlace) override {}
+    [[nodiscard]] bool hears_requests() const override { return true; }
+    void requested(const walk::Request& request) override { requests.push_back(request); }
+    std::vector<walk::Request> requests;
+  };
+  for_random_cases("driven", [](TimedCase& c, Random& /*random*/) {
+    if (c.machine.clusters != 1 || c.machine.placement != Placement::shared ||
+        c.machine.ports_of_node() != 1 || c.machine.scheme == Scheme::space) {
+      return;
+    }
+    Listener heard;
+    c.options.observer = &heard;
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
+    std::size_t at = 0;
+    const replay::DrivenResult driven =
+        replay::drive_memory(c.machine, {.outstanding = 1}, [&](walk::Request& request) {
+          if (at == heard.requests.size()) {
+            return false;
+          }
+          request = heard.requests[at++];
+          return true;
+        });
+    EXPECT_EQ(driven.late, 0);
+    EXPECT_EQ(driven.latency.count, result.clusters[0].interconnect.reads);
+    EXPECT_LE(driven.machine.end, result.end);
+    const replay::ClusterResult& found = driven.machine.clusters[0];
+    for (const auto& counter : memory::InterconnectStatistics::counters()) {
+      EXPECT_EQ(counter.value(found.interconnect), counter.value(result.clusters[0].interconnect))
+          << counter.name;
+    }
+    ASSERT_EQ(found.banks.size(), result.clusters[0].banks.size());
+    for (std::size_t bank = 0; bank < found.banks.size(); ++bank) {
+      EXPECT_EQ(found.banks[bank].accesses, result.clusters[0].banks[bank].accesses);
+      EXPECT_EQ(found.banks[bank].waits.sum, result.clusters[0].banks[bank].waits.sum);
+    }
   });
 }
 
