@@ -6,10 +6,8 @@
 #include <exception>
 #include <filesystem>
 #include <future>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <thread>
 
 #include "sim/error.h"
 #include "sim/made_directory.h"
@@ -354,20 +352,30 @@ const std::vector<Table>& Study::tables() const { return data_->tables; }
 const std::string& Study::summary() const { return data_->summary; }
 std::string Study::report() const { return page_of(data_->directory); }
 
-Result run(const std::string& config, const Settings& settings, const KeepGoing& keep_going) {
+Result run(const std::string& config, const Settings& settings, const std::string& directory,
+           const KeepGoing& keep_going) {
   return translated([&] {
     return interruptible(keep_going, [&](sim::WorkMeter& meter) {
       sim::Schema schema = run::run_schema();
       keys::declare_price_keys(schema);
       sim::Config read_config = read(schema, config, settings);
+      tables::refuse_other_results(directory, tables::run_name);
+      const sim::MadeDirectory made = show::prepare_output(directory);
       run::RunOptions options;
+      options.directory = directory;
       options.what_helps = helps::Measuring::within_budget;
       options.prices = keys::read_given_prices(read_config);
       options.meter = &meter;
       auto data = std::make_shared<Result::Data>();
       data->live.emplace(run::run(read_config, std::move(options)));
-      data->json = show::json_of(*data->live);
       data->summary = show::summary_of(*data->live);
+      if (directory.empty()) {
+        data->json = show::json_of(*data->live);
+      } else {
+        data->json = show::write_output(*data->live, directory).json;
+        data->directory = directory;
+        data->live.reset();
+      }
       data->read(tables::RunJson(nlohmann::ordered_json::parse(data->json), config));
       return Result(std::move(data));
     });

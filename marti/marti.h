@@ -96,7 +96,7 @@ class MARTI_PUBLIC Result {
   /// The page of `marti report`: one HTML file that loads nothing.
   [[nodiscard]] std::string report() const;
   /// Writes what `marti run -o` writes. Throws Error for a directory that holds another kind of result, and
-  /// for a result that was opened, whose directory has it.
+  /// for a result that is in a directory already.
   void save(const std::string& directory) const;
 
   struct Data;  ///< of the library
@@ -149,8 +149,9 @@ class MARTI_PUBLIC Study {
 using Settings = std::vector<std::string>;
 
 /// One frame on one machine. `config`: the name of a TOML file; empty: all keys have their defaults.
+/// `directory`: where all is written that `marti run -o` writes, with what the run records; empty: nowhere.
 [[nodiscard]] MARTI_PUBLIC Result run(const std::string& config, const Settings& settings = {},
-                                      const KeepGoing& keep_going = {});
+                                      const std::string& directory = {}, const KeepGoing& keep_going = {});
 
 struct SweepChoices {
   /// Where the store is kept, and goes on when it is there already; empty: a directory that is removed with

@@ -99,8 +99,8 @@ PYBIND11_MODULE(_marti, module) {
 
   module.def(
       "run",
-      [](const std::string& config, const marti::Settings& settings) {
-        return marti::run(config, settings, signals_allow);
+      [](const std::string& config, const marti::Settings& settings, const std::string& directory) {
+        return marti::run(config, settings, directory, signals_allow);
       },
       WithoutGil());
   module.def(

@@ -123,6 +123,18 @@ class Runs(unittest.TestCase):
             with self.assertRaisesRegex(marti.Error, "already"):
                 opened.save(directory)
 
+    def test_a_run_may_record_into_a_directory(self):
+        with tempfile.TemporaryDirectory() as directory:
+            result = marti.run(self.config, SMALL, directory=directory, machine__nodes=4, record__timeline=True)
+            self.assertEqual(result.end, self.result.end)
+            self.assertTrue(pathlib.Path(directory, "timeline.json").exists())
+            numpy.testing.assert_array_equal(result.image, self.result.image)
+            self.assertIn("timeline", result.summary)
+            with self.assertRaisesRegex(marti.Error, "already"):
+                result.save(directory)
+        with self.assertRaisesRegex(marti.Error, "record.timeline"):
+            marti.run(self.config, SMALL, record__timeline=True)
+
     def test_the_page_is_shown_in_notebooks(self):
         page = self.result.report()
         self.assertTrue(page.html.startswith("<!DOCTYPE html>"))

@@ -47,12 +47,15 @@ Path = Union[str, "os.PathLike[str]", None]
 ATTEMPTS = 3
 
 
-def run(config: Path = None, settings: Mapping[str, Any] | None = None, /, **more: Any) -> Result:
+def run(
+    config: Path = None, settings: Mapping[str, Any] | None = None, /, *, directory: Path = None, **more: Any
+) -> Result:
     """One frame on one machine.
 
     config: a TOML file; None: all keys have their defaults. Settings override the file: {"machine.nodes": 64}, or as
-    arguments with two underscores for the dot, machine__nodes=64. Error if a setting or the file is wrong."""
-    return Result(_marti.run(_file(config), _assignments(settings, more)))
+    arguments with two underscores for the dot, machine__nodes=64. directory: where all is written that `marti run -o`
+    writes, with what the run records. Error if a setting or the file is wrong."""
+    return Result(_marti.run(_file(config), _assignments(settings, more), _file(directory)))
 
 
 def sweep(
