@@ -51,6 +51,9 @@ void check_simt(const MachineConfig& config) {
     if (config.prefetch.into_unit()) {
       throw sim::KeyError(key_of_unit(config.prefetch), "is for node.kind = \"simt\"; use prefetch.children");
     }
+    if (config.rt.sort != RaySort::none) {
+      throw sim::KeyError("rt.sort", "is for node.kind = \"simt\"; set it to \"none\"");
+    }
     if (config.rt.stack > 0) {
       throw sim::KeyError("rt.stack", "is for node.kind = \"simt\"; set it to 0");
     }
@@ -69,12 +72,17 @@ void check_simt(const MachineConfig& config) {
   for (const auto& [key, cycles] : {std::pair{"rt.box_cycles", rt.box_cycles},
                                     {"rt.leaf_cycles", rt.leaf_cycles},
                                     {"rt.triangle_cycles", rt.triangle_cycles},
-                                    {"rt.quadric_cycles", rt.quadric_cycles}}) {
+                                    {"rt.quadric_cycles", rt.quadric_cycles},
+                                    {"rt.sort_cycles", rt.sort_cycles}}) {
     if (cycles < 0) {
       throw sim::KeyError(key, "must not be negative");
     }
   }
   check_stack(config);
+  check_range("rt.sort_rays", rt.sort_rays, 1, most_sorted_rays);
+  if (rt.sort != RaySort::none && rt.warps == 0) {
+    throw sim::KeyError("rt.sort", "is for rays that enter a ray-tracing unit; set rt.warps to at least 1");
+  }
   check_range("prefetch.stack", config.prefetch.stack, 0, most_prefetched_entries);
   check_range("prefetch.queue", config.prefetch.queue, 1, most_queued_prefetches);
   if (config.prefetch.into_unit() && rt.warps == 0) {

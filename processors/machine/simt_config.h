@@ -26,6 +26,11 @@ inline constexpr std::array<std::string_view, 4> rt_scheduler_names = {"oldest",
 enum class RtCoalesce : std::uint8_t { none, warp, unit };
 inline constexpr std::array<std::string_view, 3> rt_coalesce_names = {"none", "warp", "unit"};
 
+/// By what rays of several warps are sorted before they enter the unit. kind: bounce, then kind of ray;
+/// direction, origin: see program/ray_grid.h.
+enum class RaySort : std::uint8_t { none, kind, direction, origin };
+inline constexpr std::array<std::string_view, 4> ray_sort_names = {"none", "kind", "direction", "origin"};
+
 /// The most lanes of a warp, warps of a node, and slots on which warps compute.
 inline constexpr std::uint32_t most_lanes = 64;
 inline constexpr std::uint32_t most_warps = 64;
@@ -40,6 +45,9 @@ inline constexpr std::uint32_t most_test_units = 4096;
 /// The most entries of a lane's stack that are on chip, and bytes of an entry: a node and its distance.
 inline constexpr std::uint32_t most_stack_entries = 1024;
 inline constexpr std::uint32_t stack_entry_bytes = 8;
+
+/// The most rays that are sorted together.
+inline constexpr std::uint32_t most_sorted_rays = most_lanes * most_warps;
 
 struct SimtConfig {
   std::uint32_t lanes = 32;  ///< of a warp, 1 to most_lanes
@@ -65,6 +73,9 @@ struct RtUnitConfig {
   /// Entries of a lane's stack that are on chip, 0 to most_stack_entries; others are in memory. 0: any number
   /// is on chip.
   std::uint32_t stack = 0;
+  RaySort sort = RaySort::none;
+  std::uint32_t sort_rays = 256;  ///< that are sorted together, 1 to most_sorted_rays
+  std::int64_t sort_cycles = 32;  ///< from when they are known until they wait for the unit, at least 0
 };
 
 /// The part of check() for SIMT nodes; checks nothing for others.

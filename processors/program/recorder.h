@@ -15,6 +15,7 @@
 
 #include "accel/ray.h"
 #include "accel/visitor.h"
+#include "processors/program/ray_grid.h"
 #include "processors/program/work_log.h"
 #include "sim/chunks.h"
 #include "sim/error.h"
@@ -42,12 +43,21 @@ class RowRecorder {
  public:
   void phase(Phase /*phase*/, RayKind /*kind*/) {}
 
-  void begin_row(std::uint32_t width) {
+  /// `grid`: by which the row also gets a word for each ray; null: it gets none.
+  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr) {
     next_ = buffer_.get();
     begin_.clear();
     begin_.reserve(std::size_t{width} + 1);
+    grid_ = grid;
+    rays_.clear();
+    rays_begin_.clear();
   }
-  void begin_pixel() { begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get())); }
+  void begin_pixel() {
+    begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
+    if (grid_ != nullptr) {
+      rays_begin_.push_back(static_cast<std::uint32_t>(rays_.size()));
+    }
+  }
 
   void branch(std::uint32_t node) { put(make_word(Step::branch, node)); }
   void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
@@ -66,8 +76,11 @@ class RowRecorder {
       put(tested[i]);
     }
   }
-  void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& /*ray*/) {
+  void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& ray) {
     put(make_word(Step::ray, ray_operand(kind, bounce)));
+    if (grid_ != nullptr) {
+      rays_.push_back(grid_->word(ray));
+    }
   }
   void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
   void light(std::uint32_t light) { put(make_word(Step::light, light)); }
@@ -81,12 +94,17 @@ class RowRecorder {
     next_ = std::copy(words.begin(), words.end(), next_);
   }
 
+  /// What is to go with the words of copy(), where rays have words.
+  void copy_rays(std::span<const std::uint32_t> rays) { rays_.insert(rays_.end(), rays.begin(), rays.end()); }
+
   /// Ends the row and copies it out.
   void end_row(LogRow& row) {
     begin_pixel();
     const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
     row.words = sim::ChunkVector<std::uint32_t>(buffer_.get(), next_, chunks);
     row.begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
+    row.rays = sim::ChunkVector<std::uint32_t>(rays_.begin(), rays_.end(), chunks);
+    row.rays_begin = sim::ChunkVector<std::uint32_t>(rays_begin_.begin(), rays_begin_.end(), chunks);
   }
 
  private:
@@ -129,6 +147,9 @@ class RowRecorder {
   std::uint32_t* next_ = nullptr;
   std::uint32_t* end_ = nullptr;
   std::vector<std::uint32_t> begin_;
+  const RayGrid* grid_ = nullptr;
+  std::vector<std::uint32_t> rays_;
+  std::vector<std::uint32_t> rays_begin_;
 
  protected:
   sim::Chunks chunks_;  // of the rows
@@ -137,8 +158,8 @@ class RowRecorder {
 /// Writes beside the words which children of each branch the rays enter.
 class EnteredRecorder : public RowRecorder {
  public:
-  void begin_row(std::uint32_t width) {
-    RowRecorder::begin_row(width);
+  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr) {
+    RowRecorder::begin_row(width, grid);
     entered_.clear();
     begin_.clear();
     begin_.reserve(std::size_t{width} + 1);

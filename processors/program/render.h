@@ -73,6 +73,8 @@ struct RenderOptions {
   /// Of a bounding volume hierarchy without mailboxes and walked depth first: the log also has which children
   /// of each branch a ray entered, four bytes a visit.
   bool entered = false;
+  /// The log also has for each ray where it begins and where it goes (ray_grid.h), four bytes a ray.
+  bool ray_words = false;
   /// The pixels that are traced; null for all. The others are those of `before`, or else black and without
   /// words in the log. Must be of the image's size.
   const PixelSet* only = nullptr;

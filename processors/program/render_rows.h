@@ -35,6 +35,7 @@ template <typename Real, typename Structure, typename Recorder>
 void render_rows(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
                  const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows, Frame& frame) {
   const scenes::ImagePlane plane = image_plane(scene.camera, options);
+  const RayGrid grid(structure.triangles().bounds());
   tbb::enumerable_thread_specific<Worker<Recorder>> workers;
 
   const auto render_row = [&](std::uint32_t y) {
@@ -45,7 +46,7 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
       worker.recorder.prepare(structure.triangles().size());
     }
     if constexpr (recording) {
-      worker.recorder.begin_row(options.width);
+      worker.recorder.begin_row(options.width, options.ray_words ? &grid : nullptr);
     }
     glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
     for (std::uint32_t x = 0; x < options.width; ++x) {
@@ -55,6 +56,9 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
           pixels[x] = options.before->image.at(x, y);
           if constexpr (recording) {
             worker.recorder.copy(options.before->log->pixel(x, y));
+            if (options.ray_words) {
+              worker.recorder.copy_rays(options.before->log->ray_words(x, y));
+            }
             if constexpr (accel::SeesEntered<Recorder>) {
               worker.recorder.copy_entered(options.before->log->entered(x, y));
             }

@@ -131,6 +131,10 @@ struct LogRow {
   /// accel::EnteredChildren, and where those of each pixel begin, width + 1 offsets. Else empty.
   sim::ChunkVector<std::uint32_t> entered;
   sim::ChunkVector<std::uint32_t> entered_begin;
+  /// Beside the words, where RenderOptions::ray_words asks for it: a word for each ray (ray_grid.h), and
+  /// where those of each pixel begin, width + 1 offsets. Else empty.
+  sim::ChunkVector<std::uint32_t> rays;
+  sim::ChunkVector<std::uint32_t> rays_begin;
 };
 
 /// How much a log holds; also the denominators of bytes per ray and steps per ray.
@@ -187,6 +191,13 @@ struct WorkLog {
     const LogRow& row = rows[y];
     return std::span(row.entered)
         .subspan(row.entered_begin[x], row.entered_begin[x + 1] - row.entered_begin[x]);
+  }
+  /// Whether it has words of rays.
+  [[nodiscard]] bool has_ray_words() const { return !rows.empty() && !rows.front().rays_begin.empty(); }
+  /// A word for each of the pixel's rays, in their order; has_ray_words().
+  [[nodiscard]] std::span<const std::uint32_t> ray_words(std::uint32_t x, std::uint32_t y) const {
+    const LogRow& row = rows[y];
+    return std::span(row.rays).subspan(row.rays_begin[x], row.rays_begin[x + 1] - row.rays_begin[x]);
   }
   [[nodiscard]] std::uint32_t triangles() const {
     return primitives - static_cast<std::uint32_t>(quadrics.size());

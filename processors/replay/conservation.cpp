@@ -98,7 +98,8 @@ void check_contexts(const machine::MachineConfig& config, const MachineResult& r
   }
 }
 
-void check_simt(const program::WorkLog& log, const MachineResult& result) {
+void check_simt(const program::WorkLog& log, const machine::MachineConfig& config,
+                const MachineResult& result) {
   for (std::size_t node = 0; node < result.simt.nodes.size(); ++node) {
     const walk::SimtCounts& counts = result.simt.nodes[node];
     walk::require(counts.joined <= result.nodes[node].references.all_hits(),
@@ -110,12 +111,20 @@ void check_simt(const program::WorkLog& log, const MachineResult& result) {
   if (result.simt.nodes.empty()) {
     return;
   }
+  const walk::SimtCounts counts = result.simt.counts();
+  walk::require(config.rt.sort == machine::RaySort::none
+                    ? counts.sorted_rays == 0 && counts.sorted_warps == 0
+                    : counts.sorted_rays == counts.rays && counts.sorted_warps == counts.traces,
+                "each ray that reads a record is sorted, or none is");
+  walk::require(counts.sorted_rays <= counts.sorted_warps * config.simt.lanes &&
+                    counts.sorted_warps <= counts.sorted_rays,
+                "a warp of sorted rays has a ray, and no more rays than lanes");
   // Of a bvh a leaf that is taken as one voxel has no record.
   const cost::StepCounts steps = result.steps();
   const bool leaf_records = !accel::walks_bvh(log.traversal);
   const std::int64_t most = steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts + steps.lists +
                             steps.tests + steps.passes;
-  const std::int64_t records = result.simt.counts().records - result.simt.counts().fills;
+  const std::int64_t records = counts.records - counts.fills;
   walk::require(records <= most && records >= most - (leaf_records ? 0 : steps.cuts),
                 "lanes read each record of their rays once");
 }
@@ -202,7 +211,7 @@ void check_conservation(const program::WorkLog& log, const machine::MachineConfi
   walk::require(part(time, cost::Activity::bank_wait) <= bank_waits + rounded,
                 "nodes wait for banks no longer than accesses do");
   check_contexts(config, result);
-  check_simt(log, result);
+  check_simt(log, config, result);
   if (result.build.sharing != machine::Sharing::given) {
     node::check_build(log, config, result.build);
   }

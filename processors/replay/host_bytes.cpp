@@ -83,8 +83,15 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
   std::uint64_t warps = 0;
   if (config.kind == machine::NodeKind::simt) {
     constexpr std::uint64_t bytes_a_node_at_most = 8192;  // what is due in each cycle, accesses, the rest
-    warps = bytes_a_node_at_most +
-            config.simt.warps * (sizeof(simt::Warp) + 1024 + config.simt.lanes * sizeof(simt::Lane));
+    // Of sorted rays each group but the last of those sorted together is full.
+    const std::uint64_t groups =
+        config.rt.sort == machine::RaySort::none
+            ? 0
+            : std::uint64_t{config.simt.warps} * config.simt.lanes /
+                      std::max(1U, std::min(config.simt.lanes, config.rt.sort_rays)) +
+                  config.simt.warps;
+    warps = bytes_a_node_at_most + (config.simt.warps + groups) *
+                                       (sizeof(simt::Warp) + 1024 + config.simt.lanes * sizeof(simt::Lane));
   }
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
   const std::uint64_t events =

@@ -238,6 +238,12 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
                         "the frame was traced without noting which children rays enter, as that of a machine "
                         "with other nodes is; begin anew with node.kind = \"simt\"");
   }
+  if ((config.rt.sort == machine::RaySort::direction || config.rt.sort == machine::RaySort::origin) &&
+      !log.has_ray_words()) {
+    throw sim::KeyError("rt.sort",
+                        "the frame was traced without noting where rays begin and go; begin anew with this "
+                        "rt.sort");
+  }
   if (config.layout.leaf == memory::LeafLayout::inline_records && !accel::walks_bvh(log.traversal)) {
     throw sim::KeyError("layout.leaf", "\"inline\" is for a bvh; use \"list\"");
   }

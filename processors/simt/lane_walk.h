@@ -34,6 +34,7 @@ struct Lane {
   const std::uint32_t* entry_end = nullptr;
   std::uint32_t list = 0;  ///< entries of a list that is still to be read
   std::uint32_t ray = 0;   ///< operand of the ray that it holds: orders rays by bounce, then kind
+  std::uint32_t rays = 0;  ///< of the pixel, up to and with this one
   walk::Origin origin{};   ///< of its records; kept where it is counted
 };
 
@@ -90,6 +91,7 @@ bool LaneWalk::shade(Lane& lane, ShaderCounts& counts, const Read& read) const {
       case program::Step::ray:
         ++counts[program::ray_number_of(operand)];
         lane.ray = operand;
+        ++lane.rays;
         lane.origin.begin_ray(operand);
         return true;
       case program::Step::shade:

@@ -19,9 +19,15 @@ void SimtNode::leave_and_enter() {
     unit_slots_ &= ~(std::uint64_t{1} << warp.slot);
     warp.state = LaneState::held;
     warp.state_lanes = 0;
-    begin_shading(number, warp.picked);
+    if (is_group(number)) {
+      end_group(number);
+    } else {
+      begin_shading(number, warp.picked);
+    }
   }
-  if (!unit_waiters_.empty() && in_unit_.size() < rt.warps) {
+  sort_pool();
+  if (!unit_waiters_.empty() && in_unit_.size() < rt.warps &&
+      warps_[unit_waiters_.front()].trace_began < cycle_) {
     const std::uint32_t number = unit_waiters_.front();
     unit_waiters_.pop_front();
     Warp& warp = warps_[number];
@@ -30,7 +36,11 @@ void SimtNode::leave_and_enter() {
     unit_slots_ |= std::uint64_t{1} << warp.slot;
     warp.entered = entered_++;
     warp.wants = warp.members;
-    place(warp, LaneState::scheduler, count(warp.members));
+    if (is_group(number)) {
+      time_.move_lanes(LaneState::unit, LaneState::scheduler, count(warp.members));
+    } else {
+      place(warp, LaneState::scheduler, count(warp.members));
+    }
     in_unit_.push_back(number);
     ++time_.counts().traces;
   }
@@ -237,7 +247,7 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   for_each_lane(lanes.lanes, [&](std::uint32_t member) {
     if (!next_record(lanes.warp, member)) {
       done |= Lanes{1} << member;
-      end_ray(lanes.warp);
+      end_ray(warps_[home_of(lanes.warp, member) / shared_.input.config.simt.lanes].trace_began);
     }
   });
   warp.wants |= lanes.lanes & ~done;
@@ -335,8 +345,8 @@ void SimtNode::put_prefetches() {
   wished_.clear();
 }
 
-void SimtNode::end_ray(std::uint32_t warp) {
-  const std::int64_t cycles = cycle_ - warps_[warp].trace_began;
+void SimtNode::end_ray(std::int64_t began) {
+  const std::int64_t cycles = cycle_ - began;
   time_.counts().ray_cycles += cycles;
   time_.counts().longest_ray = std::max(time_.counts().longest_ray, cycles);
 }

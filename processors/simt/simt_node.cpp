@@ -182,7 +182,8 @@ void SimtNode::set_packet(std::uint32_t warp, const machine::Packet& packet, std
   warps_[warp].turn = 0;
 }
 
-bool SimtNode::end_warp() {
+bool SimtNode::end_warp(std::uint32_t warp) {
+  warps_[warp].over = true;
   --without_packet_;
   return --live_ == 0;
 }
@@ -220,7 +221,9 @@ void SimtNode::look_up(std::int64_t cycle) {
   const bool more = sending_ != no_access || !readers_.empty() || !prefetches_.empty() ||
                     std::any_of(in_unit_.begin(), in_unit_.end(),
                                 [&](std::uint32_t warp) { return warps_[warp].wants != 0; });
-  const bool unit = !unit_waiters_.empty() && in_unit_.size() < shared_.input.config.rt.warps;
+  const bool unit = (!unit_waiters_.empty() && in_unit_.size() < shared_.input.config.rt.warps &&
+                     warps_[unit_waiters_.front()].trace_began <= cycle) ||
+                    pool_closes();
   const bool leave =
       std::any_of(in_unit_.begin(), in_unit_.end(), [&](std::uint32_t warp) { return leaves(warp); });
   if ((more && !blocked) || unit || leave || !waiting_boxes_.empty() || !waiting_primitives_.empty()) {

@@ -94,7 +94,7 @@ class SimtNode {
   /// It reaches it in a later cycle.
   void expect_packet(std::uint32_t warp, const machine::Packet& packet, std::int64_t cycle);
   /// No packet is left for the warp. True when none is left for the node.
-  bool end_warp();
+  bool end_warp(std::uint32_t warp);
   [[nodiscard]] bool finished() const { return live_ == 0; }
   /// The line of a register arrives, which became known in cycle `known`, or before the next.
   void arrives(std::uint32_t number, const memory::Service& service, std::int64_t known);
@@ -150,7 +150,7 @@ class SimtNode {
   void write_out();
   void give_slots();
   void place(Warp& warp, LaneState state, std::int64_t lanes);
-  void end_ray(std::uint32_t warp);
+  void end_ray(std::int64_t began);
 
   // rt_unit.cpp: warps in the unit.
   void leave_and_enter();
@@ -176,6 +176,21 @@ class SimtNode {
     return warps_[warp].tracing == 0 && warps_[warp].unposted == 0;
   }
 
+  // ray_pool.cpp: rays that are sorted before they enter the unit.
+  [[nodiscard]] bool is_group(std::uint32_t warp) const { return warp >= shared_.input.config.simt.warps; }
+  // Where lists of all lanes have the lane of a warp whose ray is at this place, in a group or not.
+  [[nodiscard]] std::size_t home_of(std::uint32_t warp, std::uint32_t number) const {
+    const std::size_t place = place_of(warp, number);
+    return is_group(warp) ? homes_[place] : place;
+  }
+  void put_into_pool(std::uint32_t warp);
+  [[nodiscard]] bool pool_closes() const;
+  void sort_pool();
+  void form_groups(std::size_t rays);
+  std::uint32_t take_group();
+  void end_group(std::uint32_t group);
+  void move_lane(std::size_t a, std::size_t b);
+
   // spilled_stacks.cpp: stacks that are in memory in part.
   bool read_stack(std::uint32_t warp, std::uint32_t number);
   bool move_stack(std::uint32_t warp, std::uint32_t number, const std::uint32_t* visit);
@@ -196,7 +211,7 @@ class SimtNode {
   std::int64_t stepped_ = -1;  // the last cycle whose step() was called
   std::int64_t woken_ = -1;    // the cycle of the last wake()
 
-  std::vector<Warp> warps_;
+  std::vector<Warp> warps_;  // and, behind them, groups of sorted rays, which are warps in the unit
   std::vector<Lane> lanes_;
   CycleQueue queue_;
   LineRegisters registers_;
@@ -255,6 +270,15 @@ class SimtNode {
   std::vector<LaneStack> stacks_;      // of each lane of each warp; empty where none is asked for
   std::vector<Wish> wishes_;           // of this cycle
   std::vector<std::uint32_t> wished_;  // nodes of the tree
+
+  // Sorting rays.
+  struct PooledRay {
+    std::uint32_t warp = 0;
+    std::uint32_t lane = 0;
+  };
+  std::deque<PooledRay> pool_;              // in the order in which they came
+  std::vector<std::size_t> homes_;          // of each lane of each group, where its ray is from
+  std::vector<std::uint32_t> free_groups_;  // numbers that warps_ has room for
 
   // Stacks in memory.
   struct SpilledStack {

@@ -252,7 +252,7 @@ class SimtNodes final : public node::PacketNodes<SimtNodes, SimtCursor>, private
     SimtNode& its = nodes_[node];
     const std::optional<node::Grant> grant = host_.next(node, now);
     if (!grant) {
-      if (its.end_warp()) {
+      if (its.end_warp(warp)) {
         statistics_[node].finish = now;
         end_ = std::max(end_, now);
       }

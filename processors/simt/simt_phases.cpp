@@ -9,16 +9,8 @@ namespace marti::processors::simt {
 
 namespace {
 
-Lanes lowest(std::uint32_t lanes) { return lanes == 64 ? ~Lanes{0} : (Lanes{1} << lanes) - 1; }
-
 std::uint32_t pixels_of(const machine::Packet& packet) {
   return (packet.x1 - packet.x0) * (packet.y1 - packet.y0);
-}
-
-// A packet's pixel by its number, row by row.
-walk::PixelPlace pixel_of(const machine::Packet& packet, std::uint32_t number) {
-  const std::uint32_t columns = packet.x1 - packet.x0;
-  return {packet.x0 + number % columns, packet.y0 + number / columns};
 }
 
 RoundCounts round_counts(const cost::StepCounts& steps) {
@@ -318,6 +310,10 @@ void SimtNode::begin_trace(std::uint32_t number) {
     if (warp.tracing != 0) {
       time_.counts().rays += count(warp.tracing);
       warp.members = warp.tracing;
+      if (shared_.input.config.rt.sort != machine::RaySort::none) {
+        put_into_pool(number);
+        return;
+      }
       warp.does = Does::waits_for_unit;
       place(warp, LaneState::unit, count(warp.picked));
       insert_in_order(unit_waiters_, number, [&](std::uint32_t other) { return warps_[other].trace_began; });
@@ -360,7 +356,7 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
     } else if (counts != RoundCounts{}) {
       warp.members |= bit;
     } else if ((warp.tracing & bit) != 0) {
-      end_ray(number);
+      end_ray(warp.trace_began);
     }
     sim::merge(statistics_.steps, steps);
     for (std::size_t step = 0; step < round_steps; ++step) {

@@ -14,7 +14,7 @@ bool SimtNode::read_stack(std::uint32_t warp, std::uint32_t number) {
     --its.to_read;
     const walk::StackPlaces& places = shared_.stack_places;
     const std::uint32_t bytes = shared_.input.config.reference_bytes();
-    const memory::Address stack = places.of(number_ % shared_.input.config.nodes, place_of(warp, number));
+    const memory::Address stack = places.of(number_ % shared_.input.config.nodes, home_of(warp, number));
     lane(warp, number).record = {stack + std::uint64_t{its.stack.lines() + its.to_read} * bytes, bytes,
                                  memory::RecordKind::node, Test::none};
     return true;
@@ -34,7 +34,7 @@ bool SimtNode::move_stack(std::uint32_t warp, std::uint32_t number, const std::u
   SpilledStack& its = spilled_stacks_[place_of(warp, number)];
   LaneStack& entries = stack(warp, number);
   const memory::Address places =
-      shared_.stack_places.of(number_ % shared_.input.config.nodes, place_of(warp, number));
+      shared_.stack_places.of(number_ % shared_.input.config.nodes, home_of(warp, number));
   for (std::uint32_t pushed = entries.pushed(); pushed > 0; --pushed) {
     its.stack.push(shared_.stack_size, [&](std::uint32_t line) {
       spills_.push_back({warps_[warp].entered, number, warp,

@@ -8,6 +8,7 @@
 #include "processors/machine/packets.h"
 #include "processors/simt/node_time.h"
 #include "processors/walk/attribution.h"
+#include "processors/walk/observer.h"
 
 namespace marti::processors::simt {
 
@@ -21,6 +22,17 @@ void for_each_lane(Lanes lanes, const Use& use) {
   for (; lanes != 0; lanes &= lanes - 1) {
     use(static_cast<std::uint32_t>(std::countr_zero(lanes)));
   }
+}
+
+/// The lowest so many lanes, at most 64.
+[[nodiscard]] inline Lanes lowest(std::uint32_t lanes) {
+  return lanes == 64 ? ~Lanes{0} : (Lanes{1} << lanes) - 1;
+}
+
+/// A packet's pixel by its number, row by row.
+[[nodiscard]] inline walk::PixelPlace pixel_of(const machine::Packet& packet, std::uint32_t number) {
+  const std::uint32_t columns = packet.x1 - packet.x0;
+  return {packet.x0 + number % columns, packet.y0 + number / columns};
 }
 
 /// A line that is to be looked up.
@@ -49,6 +61,7 @@ struct Warp {
   Does does = Does::nothing;
   machine::Packet packet;
   std::int64_t packet_began = 0;
+  bool over = false;  ///< none is left for it
   std::uint32_t turn = 0;
   Lanes pixels = 0;   ///< lanes that have a pixel in this turn
   Lanes rays = 0;     ///< lanes that hold a ray
@@ -71,6 +84,8 @@ struct Warp {
   Lanes tracing = 0;           ///< lanes that are not done
   std::uint32_t slot = 0;      ///< of the unit
   std::uint64_t entered = 0;   ///< how many warps had entered the unit before
+  std::uint32_t pooled = 0;    ///< rays that wait to be sorted
+  std::uint32_t away = 0;      ///< rays that do, or are in a sorted group that has not left the unit
   std::uint32_t unposted = 0;  ///< lines of its lanes' stacks that wait for the write buffer
 
   std::vector<Write> writes;

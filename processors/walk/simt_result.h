@@ -35,6 +35,8 @@ struct SimtCounts {
   std::int64_t longest_warp = 0;
   std::int64_t spills = 0;
   std::int64_t fills = 0;
+  std::int64_t sorted_warps = 0;
+  std::int64_t sorted_rays = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<SimtCounts>;
@@ -81,7 +83,10 @@ struct SimtCounts {
         C{"longest_warp", "cycle", "the most cycles of a warp with one packet", &SimtCounts::longest_warp,
           MergeRule::maximum},
         C{"spills", "1", "lines of traversal stacks written to memory (rt.stack)", &SimtCounts::spills},
-        C{"fills", "1", "lines of traversal stacks read back", &SimtCounts::fills}};
+        C{"fills", "1", "lines of traversal stacks read back", &SimtCounts::fills},
+        C{"sorted_warps", "1", "warps that were formed of sorted rays (rt.sort)", &SimtCounts::sorted_warps},
+        C{"sorted_rays", "1", "lanes of these that have a ray", &SimtCounts::sorted_rays, MergeRule::sum,
+          Better::neither}};
   }
 };
 static_assert(sim::declares_every_member<SimtCounts>());

@@ -231,6 +231,8 @@ void add_memory(std::vector<FigureEntry>& all) {
       Better::higher, with_work / (with_work + own("simt_lanes_held") + own("simt_lanes_empty")));
   add("simt_lanes_an_access", "1", "SIMT nodes: lanes that share an access to a record", Better::higher,
       own("simt_records") / own("simt_accesses"));
+  add("simt_lanes_filled", "1", "SIMT nodes: lanes with a ray of a warp that was formed by sorting (rt.sort)",
+      Better::higher, own("simt_sorted_rays") / own("simt_sorted_warps"));
   add("simt_mean_lines", "1", "SIMT nodes: mean number of lines that a node has under way", Better::neither,
       own("simt_line_cycles") / own("simt_cycles"));
   add("simt_mean_warps", "1", "SIMT nodes: mean number of warps in a ray-tracing unit", Better::neither,

@@ -85,10 +85,14 @@ void read_for_units(sim::Config& config, FrameConfig& frame) {
     const std::optional<std::size_t> index = config.schema().find(key);
     return index ? std::get<std::string>(config.values_at(*index).front()) : "";
   };
-  if (value("node.kind") != "simt" || frame.structure != "bvh") {
+  if (value("node.kind") != "simt") {
     return;
   }
   processors::program::RenderOptions& render = frame.render;
+  render.ray_words = value("rt.sort") == "direction" || value("rt.sort") == "origin";
+  if (frame.structure != "bvh") {
+    return;
+  }
   render.entered = true;
   if (value("rt.order") == accel::walk_order_names.front()) {
     return;  // it is read with the machine, so that the frame is that of other nodes, too

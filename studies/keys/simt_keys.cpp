@@ -77,6 +77,14 @@ void declare_simt_keys(sim::Schema& schema) {
       "rt.stack", 0, {0, processors::machine::most_stack_entries}, "",
       "bvh, depth first: entries of a lane's stack that are on chip, older ones are in memory; 0: any "
       "number is on chip");
+  schema.choice(
+      "rt.sort", "none", names(processors::machine::ray_sort_names),
+      "by what rays of all warps are sorted before they enter the unit; kind: bounce, then kind of ray; "
+      "direction: octant, then cell of 8 x 8; origin: cell of 32 x 32 x 32 of the scene, in Morton "
+      "order");
+  schema.integer("rt.sort_rays", 256, {1, processors::machine::most_sorted_rays}, "",
+                 "rays that are sorted together; fewer only when no warp can add another one");
+  cycles(schema, "rt.sort_cycles", 32, "cycles to sort them");
 }
 
 void declare_simt_cache_keys(sim::Schema& schema) {
@@ -122,6 +130,15 @@ void read_simt(sim::Config& config, processors::machine::MachineConfig& machine)
     rt.box_units = count(config, "rt.box_units");
     rt.triangle_units = count(config, "rt.triangle_units");
     read_stack(config, rt);
+    rt.sort = config.choice_as<processors::machine::RaySort>("rt.sort");
+    if (rt.sort != processors::machine::RaySort::none) {
+      rt.sort_rays = count(config, "rt.sort_rays");
+      rt.sort_cycles = config.integer("rt.sort_cycles");
+    } else {
+      for (const std::string_view key : {"rt.sort_rays", "rt.sort_cycles"}) {
+        config.mark_unused_reason(key, "rays are not sorted with rt.sort = \"none\"", "rt.sort");
+      }
+    }
   }
   config.mark_unused_reason("rt", "there is no unit with rt.warps = 0", "rt.warps");
   sim::with_places(config, [&] { processors::machine::check_simt(machine); });

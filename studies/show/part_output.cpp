@@ -149,6 +149,11 @@ std::string simt_lines(const run::RunResult& r) {
                    tables::grouped(r.count("simt_spills")), tables::grouped(r.count("simt_fills")),
                    r.machine.rt.stack);
   }
+  if (r.machine.rt.sort != processors::machine::RaySort::none) {
+    fmt::format_to(out, "  {:<12}{} warps of sorted rays, {:.1f} of {} lanes filled\n", "sorting",
+                   tables::grouped(r.count("simt_sorted_warps")), number("simt_lanes_filled"),
+                   r.machine.simt.lanes);
+  }
   const processors::program::LogTotals& log = r.functional.totals;
   fmt::format_to(
       out, "  {:<12}{:.1f} visits on average, {} at most of 95 %, the most {}; {:.0f} bytes from memory\n",

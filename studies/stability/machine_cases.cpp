@@ -50,6 +50,7 @@ const std::vector<Duration>& durations() {
       {"rt.leaf_cycles", [](M& m) -> std::int64_t& { return m.rt.leaf_cycles; }},
       {"rt.triangle_cycles", [](M& m) -> std::int64_t& { return m.rt.triangle_cycles; }},
       {"rt.quadric_cycles", [](M& m) -> std::int64_t& { return m.rt.quadric_cycles; }},
+      {"rt.sort_cycles", [](M& m) -> std::int64_t& { return m.rt.sort_cycles; }},
       {"cache.hit_cycles", [](M& m) -> std::int64_t& { return m.cache.hit_cycles; }},
       {"l2.hit_cycles", [](M& m) -> std::int64_t& { return m.l2.hit_cycles; }},
       {"local.access_cycles", [](M& m) -> std::int64_t& { return m.local.access_cycles; }},

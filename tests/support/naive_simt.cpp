@@ -64,7 +64,13 @@ struct Lane {
   std::span<const std::uint32_t> entered;  // of the branches whose visits come next
   std::size_t next = 0;
   std::optional<std::uint32_t> ray;  // the operand of the `ray` step whose visits come next
+  std::size_t next_ray = 0;          // how many `ray` steps it has taken
+  std::size_t rays = 0;              // that it took before this one
   bool picked = false;
+  bool away = false;      // its ray is in the pool, or in a group
+  std::size_t place = 0;  // of its group
+  Cycle trace_began = 0;
+  std::size_t warp = 0;
   std::vector<NaiveVisit> visits;
   std::vector<memory::Address> last_spills;
   std::size_t at = 0;
@@ -90,7 +96,7 @@ struct Phase {
 };
 
 struct Warp {
-  enum class Does { ask, wait_for_packet, phase, wait_for_unit, unit, left_unit, write, written, nothing };
+  enum class Does { ask, wait_for_packet, phase, traces, left_unit, write, written, nothing };
   Does does = Does::ask;
   bool asked = false;
   sim::Ticks start = 0;
@@ -100,12 +106,18 @@ struct Warp {
   std::vector<Lane> lanes;
   Phase phase;
   Cycle trace_began = 0;
-  std::uint64_t entered = 0;  // the unit: a number that grows
   std::deque<memory::Transaction> writes;
-  std::size_t unposted = 0;  // lines of its lanes' stacks
   [[nodiscard]] bool has_packet() const {
     return does != Does::ask && does != Does::wait_for_packet && does != Does::nothing;
   }
+};
+
+// Rays that are in the unit together: those of a warp or, where rays are sorted, of several. By their places.
+struct Group {
+  std::vector<Lane*> lanes;
+  Cycle waits = 0;            // for the unit, since that cycle
+  std::uint64_t entered = 0;  // the unit: a number that grows
+  std::size_t unposted = 0;   // lines of its lanes' stacks
 };
 
 struct Register {
@@ -127,10 +139,12 @@ struct Node {
   memory::CacheCounters second_counts;
   NaivePrefetch prefetch{0};
   std::vector<Register> registers;
-  Lines coming;                                  // by no register
-  std::vector<std::optional<std::size_t>> unit;  // the warp in each slot
+  Lines coming;                              // by no register
+  std::deque<Lane*> pool;                    // rays that wait to be sorted
+  std::deque<std::shared_ptr<Group>> ready;  // they wait for the unit, without sorting in the order of warps
+  std::vector<std::shared_ptr<Group>> unit;  // what each slot has; null: nothing
   std::uint64_t entries = 0;
-  std::optional<std::size_t> picked_warp;
+  std::shared_ptr<Group> picked_group;
   std::optional<std::uint32_t> picked_treelet;
   std::size_t next_slot = 0;
   std::vector<std::shared_ptr<Reading>> accesses;  // not complete
@@ -138,8 +152,9 @@ struct Node {
   std::optional<std::size_t> stuck;             // the warp whose phase found no register
   std::optional<memory::RecordKind> looked_up;  // in this cycle
   struct Writer {
-    std::size_t warp = 0;
-    std::optional<memory::Address> line{};  // of a stack; null: the warp's pixels
+    std::size_t warp = 0;  // whose pixels are written; or a line of a stack of the group
+    std::shared_ptr<Group> group{};
+    memory::Address line = 0;
   };
   std::deque<Writer> writers;
   std::vector<WriteEntry> buffer;           // the entry to take next comes first
@@ -331,7 +346,7 @@ class NaiveSimt final : public sim::EventHandler {
         }
       }
     }
-    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+    for_lanes_in_unit(node, [&](const auto&, Lane& lane) {
       if (lane.in == Lane::In::reads && lane.access->done()) {
         lane.access = nullptr;
         lane.came = node.cycle;
@@ -361,9 +376,9 @@ class NaiveSimt final : public sim::EventHandler {
 
   void begin_tests(Node& node) {
     std::vector<std::tuple<Cycle, std::uint64_t, std::size_t, Lane*>> waiting;
-    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+    for_lanes_in_unit(node, [&](const auto& group, Lane& lane) {
       if (lane.in == Lane::In::waits) {
-        waiting.emplace_back(lane.came, warp.entered, lane.number, &lane);
+        waiting.emplace_back(lane.came, group->entered, lane.place, &lane);
       }
     });
     std::sort(waiting.begin(), waiting.end());
@@ -386,17 +401,17 @@ class NaiveSimt final : public sim::EventHandler {
 
   void end_tests(Node& node) {
     std::map<std::pair<std::uint64_t, std::size_t>, const NaiveVisit*> wishing;
-    std::map<std::pair<std::uint64_t, std::size_t>, std::pair<std::size_t, const Lane*>> ended;
-    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+    std::map<std::pair<std::uint64_t, std::size_t>, std::pair<std::shared_ptr<Group>, const Lane*>> ended;
+    for_lanes_in_unit(node, [&](const std::shared_ptr<Group>& group, Lane& lane) {
       if (lane.in == Lane::In::tests && lane.ends <= node.cycle) {
         ++lane.at;
         lane.in = Lane::In::wants;
-        ended[{warp.entered, lane.number}] = {static_cast<std::size_t>(&warp - node.warps.data()), &lane};
+        ended[{group->entered, lane.place}] = {group, &lane};
         if (lane.at == lane.visits.size()) {
           lane.in = Lane::In::done;
-          count_ray(node, warp);
+          count_ray(node, lane.trace_began);
         } else {
-          wishing[{warp.entered, lane.number}] = &lane.visits[lane.at];
+          wishing[{group->entered, lane.place}] = &lane.visits[lane.at];
         }
       }
     });
@@ -416,74 +431,116 @@ class NaiveSimt final : public sim::EventHandler {
       }
     }
     for (const auto& [order, of] : ended) {
-      const auto& [warp, lane] = of;
+      const auto& [group, lane] = of;
       const bool done = lane->in == Lane::In::done;
       for (const memory::Address line : done ? lane->last_spills : lane->visits[lane->at].spills) {
-        node.writers.push_back({warp, line});
-        ++node.warps[warp].unposted;
+        node.writers.push_back({0, group, line});
+        ++group->unposted;
         ++node.counts.spills;
       }
     }
   }
 
-  static void count_ray(Node& node, const Warp& warp) {
-    const Cycle cycles = node.cycle - warp.trace_began;
+  static void count_ray(Node& node, Cycle began) {
+    const Cycle cycles = node.cycle - began;
     ++node.counts.rays;
     node.counts.ray_cycles += cycles;
     node.counts.longest_ray = std::max(node.counts.longest_ray, cycles);
   }
 
   void leave_and_enter(Node& node) {
-    std::optional<std::size_t> leaves;  // slot
-    for (std::size_t slot = 0; slot < node.unit.size(); ++slot) {
-      if (!node.unit[slot]) {
-        continue;
-      }
-      const Warp& warp = node.warps[*node.unit[slot]];
-      const bool over =
-          warp.unposted == 0 && std::all_of(warp.lanes.begin(), warp.lanes.end(), [](const Lane& lane) {
-            return !lane.picked || lane.in == Lane::In::done;
-          });
-      if (over && (!leaves || warp.entered < node.warps[*node.unit[*leaves]].entered)) {
-        leaves = slot;
+    std::shared_ptr<Group>* leaves = nullptr;
+    for (std::shared_ptr<Group>& slot : node.unit) {
+      if (slot && slot->unposted == 0 &&
+          std::all_of(slot->lanes.begin(), slot->lanes.end(),
+                      [](const Lane* lane) { return lane->in == Lane::In::done; }) &&
+          (leaves == nullptr || slot->entered < (*leaves)->entered)) {
+        leaves = &slot;
       }
     }
-    if (leaves) {
-      if (node.picked_warp == node.unit[*leaves]) {
-        node.picked_warp.reset();
+    if (leaves != nullptr) {
+      for (Lane* const lane : (*leaves)->lanes) {
+        come_back(node.warps[lane->warp], *lane);
       }
-      node.warps[*node.unit[*leaves]].does = Warp::Does::left_unit;
-      node.unit[*leaves].reset();
-    }
-    const auto free = std::find(node.unit.begin(), node.unit.end(), std::nullopt);
-    std::optional<std::size_t> enters;
-    for (std::size_t number = 0; number < node.warps.size(); ++number) {
-      const Warp& warp = node.warps[number];
-      if (warp.does == Warp::Does::wait_for_unit && warp.trace_began < node.cycle &&
-          (!enters || warp.trace_began < node.warps[*enters].trace_began)) {
-        enters = number;
+      if (node.picked_group == *leaves) {
+        node.picked_group = nullptr;
       }
+      leaves->reset();
     }
-    if (free != node.unit.end() && enters) {
-      Warp& warp = node.warps[*enters];
-      *free = *enters;
-      warp.does = Warp::Does::unit;
-      warp.entered = node.entries++;
+    sort_pool(node);
+    const auto free = std::find(node.unit.begin(), node.unit.end(), nullptr);
+    if (free != node.unit.end() && !node.ready.empty() && node.ready.front()->waits < node.cycle) {
+      *free = node.ready.front();
+      node.ready.pop_front();
+      (*free)->entered = node.entries++;
       ++node.counts.traces;
-      for (Lane& lane : warp.lanes) {
-        lane.in = !lane.picked ? Lane::In::none : lane.visits.empty() ? Lane::In::done : Lane::In::wants;
+      for (Lane* const lane : (*free)->lanes) {
+        lane->in = Lane::In::wants;
       }
     }
+  }
+  // A ray goes back to its lane; when all of a warp's have, the warp goes on.
+  static void come_back(Warp& warp, Lane& lane) {
+    lane.away = false;
+    if (std::none_of(warp.lanes.begin(), warp.lanes.end(), [](const Lane& one) { return one.away; })) {
+      warp.does = Warp::Does::left_unit;
+    }
+  }
+
+  [[nodiscard]] bool sorts() const { return machine_.rt.sort != RaySort::none; }
+  // Takes rays that fill the pool out of it, and all if no warp can add another one.
+  void sort_pool(Node& node) {
+    while (node.pool.size() >= machine_.rt.sort_rays) {
+      form_groups(node, machine_.rt.sort_rays);
+    }
+    const bool nobody_adds = std::all_of(node.warps.begin(), node.warps.end(), [&](const Warp& warp) {
+      return warp.does == Warp::Does::nothing ||
+             std::any_of(node.pool.begin(), node.pool.end(),
+                         [&](const Lane* lane) { return &node.warps[lane->warp] == &warp; });
+    });
+    if (nobody_adds) {
+      form_groups(node, node.pool.size());
+    }
+  }
+  // Of the rays that came to the pool first.
+  void form_groups(Node& node, std::size_t rays) {
+    std::map<std::pair<std::uint32_t, std::uint64_t>, Lane*> sorted;
+    for (; rays > 0; --rays) {
+      Lane* const lane = node.pool.front();
+      node.pool.pop_front();
+      const auto [x, y] = pixel_of(node, *lane);
+      sorted[{sort_key(*lane, x, y), std::uint64_t{y} * log_.width + x}] = lane;
+    }
+    std::size_t place = 0;
+    for (const auto& [key, lane] : sorted) {
+      lane->place = place++ % machine_.simt.lanes;
+      if (lane->place == 0) {
+        node.ready.push_back(std::make_shared<Group>());
+        node.ready.back()->waits = node.cycle + machine_.rt.sort_cycles;
+        ++node.counts.sorted_warps;
+      }
+      node.ready.back()->lanes.push_back(lane);
+      ++node.counts.sorted_rays;
+    }
+  }
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> pixel_of(const Node& node, const Lane& lane) const {
+    const Warp& warp = node.warps[lane.warp];
+    return warp.pixels[warp.turn * machine_.simt.lanes + lane.number];
+  }
+  [[nodiscard]] std::uint32_t sort_key(const Lane& lane, std::uint32_t x, std::uint32_t y) const {
+    if (machine_.rt.sort == RaySort::kind) {
+      return bounce_of(*lane.ray) * 8 + static_cast<std::uint32_t>(ray_number_of(*lane.ray));
+    }
+    const std::uint32_t word = log_.ray_words(x, y)[lane.rays];
+    return machine_.rt.sort == RaySort::direction ? word % 512 : word / 512;
   }
 
   template <class Visit>
   static void for_lanes_in_unit(Node& node, const Visit& visit) {
-    for (const std::optional<std::size_t>& slot : node.unit) {
+    for (const std::shared_ptr<Group>& slot : node.unit) {
       if (slot) {
-        for (Lane& lane : node.warps[*slot].lanes) {
-          if (lane.picked) {
-            visit(node.warps[*slot], lane);
-          }
+        for (Lane* const lane : slot->lanes) {
+          visit(slot, *lane);
         }
       }
     }
@@ -565,6 +622,7 @@ class NaiveSimt final : public sim::EventHandler {
     for (std::size_t number = 0; number < warp.lanes.size(); ++number) {
       const std::size_t pixel = warp.turn * machine_.simt.lanes + number;
       warp.lanes[number].number = number;
+      warp.lanes[number].warp = static_cast<std::size_t>(&warp - node.warps.data());
       if (pixel < warp.pixels.size()) {
         warp.lanes[number].pixel = true;
         warp.lanes[number].words = log_.pixel(warp.pixels[pixel].first, warp.pixels[pixel].second);
@@ -599,6 +657,7 @@ class NaiveSimt final : public sim::EventHandler {
         program_.count(word, steps);
         if (step_of(*word) == Step::ray) {
           lane.ray = operand_of(*word);
+          lane.rays = lane.next_ray++;
         } else if (step_of(*word) == Step::shade) {
           read_lines(program_.material(operand_of(*word)), reads);
         } else if (step_of(*word) == Step::texel) {
@@ -682,14 +741,13 @@ class NaiveSimt final : public sim::EventHandler {
   // Posts what the first of those that wait writes; whether that is all.
   bool writes_first(Node& node) const {
     const Node::Writer& first = node.writers.front();
-    Warp& warp = node.warps[first.warp];
-    if (!first.line) {
-      return takes_entries(node, warp);
+    if (!first.group) {
+      return takes_entries(node, node.warps[first.warp]);
     }
-    if (!takes_entry(node, {0, *first.line, unit_})) {
+    if (!takes_entry(node, {0, first.line, unit_})) {
       return false;
     }
-    --warp.unposted;
+    --first.group->unposted;
     return true;
   }
   // Posts the writes of a warp for which there is room; whether these are all.
@@ -769,14 +827,44 @@ class NaiveSimt final : public sim::EventHandler {
           std::erase_if(lane.visits, [](const NaiveVisit& visit) { return !visit.record; });
         }
         any = any || !lane.visits.empty();
+        lane.trace_began = node.cycle;
+        lane.in = Lane::In::done;
+        lane.away = has_unit() && !lane.visits.empty();
       }
     }
     if (!any) {
       end_trace(node, warp);
     } else if (has_unit()) {
-      warp.does = Warp::Does::wait_for_unit;
+      warp.does = Warp::Does::traces;
+      send_away(node, warp);
     } else {
       begin_round(node, warp);
+    }
+  }
+
+  // Rays of a warp go to the pool or wait for the unit together.
+  void send_away(Node& node, Warp& warp) const {
+    const auto group = std::make_shared<Group>();
+    group->waits = node.cycle;
+    for (Lane& lane : warp.lanes) {
+      if (!lane.away) {
+        continue;
+      }
+      lane.in = Lane::In::none;
+      lane.place = lane.number;
+      if (sorts()) {
+        node.pool.push_back(&lane);
+      } else {
+        group->lanes.push_back(&lane);
+      }
+    }
+    if (!sorts()) {
+      auto before = node.ready.end();  // those of one cycle are served in the order of warps
+      while (before != node.ready.begin() && (*(before - 1))->waits == node.cycle &&
+             (*(before - 1))->lanes.front()->warp > group->lanes.front()->warp) {
+        --before;
+      }
+      node.ready.insert(before, group);
     }
   }
 
@@ -850,7 +938,7 @@ class NaiveSimt final : public sim::EventHandler {
       if (++lane.at < lane.visits.size()) {
         over = false;
       } else if (lane.visits.front().record) {
-        count_ray(node, warp);
+        count_ray(node, warp.trace_began);
       }
     }
     if (over) {
@@ -912,9 +1000,9 @@ class NaiveSimt final : public sim::EventHandler {
 
   static Lane* wanting_lane(Node& node, std::size_t slot) {
     if (node.unit[slot]) {
-      for (Lane& lane : node.warps[*node.unit[slot]].lanes) {
-        if (lane.in == Lane::In::wants) {
-          return &lane;
+      for (Lane* const lane : node.unit[slot]->lanes) {
+        if (lane->in == Lane::In::wants) {
+          return lane;
         }
       }
     }
@@ -924,7 +1012,7 @@ class NaiveSimt final : public sim::EventHandler {
   // ones; its oldest warp's lowest lane, and the slot of the warp.
   static std::pair<Lane*, std::size_t> pick_by_treelet(Node& node) {
     std::map<std::uint32_t, std::size_t> lanes;
-    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+    for_lanes_in_unit(node, [&](const auto&, Lane& lane) {
       if (lane.in == Lane::In::wants) {
         ++lanes[lane.visits[lane.at].treelet];
       }
@@ -942,11 +1030,10 @@ class NaiveSimt final : public sim::EventHandler {
       if (!node.unit[slot]) {
         continue;
       }
-      Warp& warp = node.warps[*node.unit[slot]];
-      for (Lane& lane : warp.lanes) {
-        if (lane.in == Lane::In::wants && lane.visits[lane.at].treelet == *node.picked_treelet &&
-            (picked.first == nullptr || warp.entered < node.warps[*node.unit[picked.second]].entered)) {
-          picked = {&lane, slot};
+      for (Lane* const lane : node.unit[slot]->lanes) {
+        if (lane->in == Lane::In::wants && lane->visits[lane->at].treelet == *node.picked_treelet &&
+            (picked.first == nullptr || node.unit[slot]->entered < node.unit[picked.second]->entered)) {
+          picked = {lane, slot};
         }
       }
     }
@@ -960,10 +1047,10 @@ class NaiveSimt final : public sim::EventHandler {
         continue;
       }
       if (machine_.rt.scheduler == RtScheduler::round_robin ||
-          (machine_.rt.scheduler == RtScheduler::greedy && node.unit[slot] == node.picked_warp)) {
+          (machine_.rt.scheduler == RtScheduler::greedy && node.unit[slot] == node.picked_group)) {
         return slot;
       }
-      if (!oldest || node.warps[*node.unit[slot]].entered < node.warps[*node.unit[*oldest]].entered) {
+      if (!oldest || node.unit[slot]->entered < node.unit[*oldest]->entered) {
         oldest = slot;
       }
     }
@@ -980,15 +1067,15 @@ class NaiveSimt final : public sim::EventHandler {
     if (lane_and_slot.first == nullptr) {
       return nullptr;
     }
-    const std::size_t picked = *node.unit[lane_and_slot.second];
-    node.picked_warp = picked;
+    const std::shared_ptr<Group> picked = node.unit[lane_and_slot.second];
+    node.picked_group = picked;
     node.next_slot = (lane_and_slot.second + 1) % node.unit.size();
     Lane& first = *lane_and_slot.first;
     auto access = std::make_shared<Reading>();
     NaiveRecord longest = first.record();
-    for_lanes_in_unit(node, [&](Warp& warp, Lane& lane) {
+    for_lanes_in_unit(node, [&](const auto& group, Lane& lane) {
       const bool joins = machine_.rt.coalesce == RtCoalesce::unit ||
-                         (machine_.rt.coalesce == RtCoalesce::warp && &warp == &node.warps[picked]);
+                         (machine_.rt.coalesce == RtCoalesce::warp && group == picked);
       if (&lane == &first ||
           (joins && lane.in == Lane::In::wants && lane.record().address == longest.address)) {
         longest.bytes = std::max(longest.bytes, lane.record().bytes);
@@ -1130,7 +1217,7 @@ class NaiveSimt final : public sim::EventHandler {
     for (const Register& one : node.registers) {
       node.counts.line_cycles += one.line ? 1 : 0;
     }
-    for (const std::optional<std::size_t>& slot : node.unit) {
+    for (const std::shared_ptr<Group>& slot : node.unit) {
       node.counts.unit_cycles += slot ? 1 : 0;
     }
     ++node.cycle;
@@ -1178,7 +1265,7 @@ class NaiveSimt final : public sim::EventHandler {
     }
     Cycle box = never;
     Cycle primitive = never;
-    for_lanes_in_unit(node, [&](Warp&, Lane& lane) {
+    for_lanes_in_unit(node, [&](const auto&, Lane& lane) {
       if (lane.in == Lane::In::tests) {
         Cycle& first = of_box(lane) ? box : primitive;
         first = std::min(first, lane.ends);
@@ -1196,7 +1283,12 @@ class NaiveSimt final : public sim::EventHandler {
                                               : Activity::idle;
   }
 
-  static void count_lanes(Node& node, const Warp& warp) {
+  // All of its rays, which are not sorted.
+  [[nodiscard]] bool waits_for_unit(const Warp& warp) const {
+    return !sorts() && std::any_of(warp.lanes.begin(), warp.lanes.end(),
+                                   [](const Lane& lane) { return lane.away && lane.in == Lane::In::none; });
+  }
+  void count_lanes(Node& node, const Warp& warp) const {
     processors::walk::SimtCounts& counts = node.counts;
     const auto waits_for = [&](const Reading& reading) -> std::int64_t& {
       return !reading.left.empty()        ? counts.lanes_scheduler
@@ -1211,14 +1303,13 @@ class NaiveSimt final : public sim::EventHandler {
         ++(warp.phase.computes()     ? counts.lanes_shading
            : warp.phase.wants_slot() ? counts.lanes_slot
                                      : waits_for(warp.phase.reading));
-      } else if (warp.does == Warp::Does::wait_for_unit && lane.picked) {
+      } else if ((lane.away && lane.in == Lane::In::none) || (lane.picked && waits_for_unit(warp))) {
         ++counts.lanes_unit;
-      } else if (warp.does == Warp::Does::unit && lane.in == Lane::In::wants) {
+      } else if (lane.away && lane.in == Lane::In::wants) {
         ++counts.lanes_scheduler;
-      } else if (warp.does == Warp::Does::unit && lane.in == Lane::In::reads) {
+      } else if (lane.away && lane.in == Lane::In::reads) {
         ++waits_for(*lane.access);
-      } else if (warp.does == Warp::Does::unit &&
-                 (lane.in == Lane::In::waits || lane.in == Lane::In::tests)) {
+      } else if (lane.away && (lane.in == Lane::In::waits || lane.in == Lane::In::tests)) {
         ++(of_box(lane) ? counts.lanes_box : counts.lanes_primitive);
       } else {
         ++counts.lanes_held;

@@ -86,6 +86,11 @@ inline processors::machine::MachineConfig random_simt(Random& random,
     machine.prefetch.treelet = treelets && random() % 2 == 0;
     machine.prefetch.queue = static_cast<std::uint32_t>(pick(random, 1, random() % 2 == 0 ? 4 : 40));
   }
+  if (rt.warps > 0 && random() % 3 == 0) {
+    rt.sort = static_cast<RaySort>(pick(random, 1, 3));
+    rt.sort_rays = static_cast<std::uint32_t>(random() % 2 == 0 ? pick(random, 1, 12) : pick(random, 1, 100));
+    rt.sort_cycles = pick(random, 0, 12);
+  }
   if (random() % 3 == 0) {
     machine.layout.section_alignment = 1U << pick(random, 0, 4);  // kinds of record share lines
   }
@@ -131,6 +136,9 @@ inline std::string describe_simt(const processors::machine::MachineConfig& machi
   value("ports", machine.simt.ports);
   value("mshrs", machine.simt.mshrs);
   value("rt.stack", machine.rt.stack);
+  choice("rt.sort", ray_sort_names, machine.rt.sort);
+  value("rt.sort_rays", machine.rt.sort_rays);
+  value("rt.sort_cycles", machine.rt.sort_cycles);
   value("prefetch.stack", machine.prefetch.stack);
   value("prefetch.treelet", machine.prefetch.treelet);
   value("queue", machine.prefetch.queue);

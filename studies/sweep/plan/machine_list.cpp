@@ -17,8 +17,10 @@ namespace marti::studies::sweep {
 
 std::size_t MachineList::enter(ReadPoint& read) {
   const std::size_t frame = enter_frame(read);
-  bool& entered = frames_[frame].config.render.entered;
-  entered = entered || read.frame.render.entered;  // one log serves all machines of the frame
+  // One log serves all machines of the frame.
+  processors::program::RenderOptions& render = frames_[frame].config.render;
+  render.entered = render.entered || read.frame.render.entered;
+  render.ray_words = render.ray_words || read.frame.render.ray_words;
   const auto on_frame = [&](const std::string& machine) {
     Digest digest;
     digest.add(frames_[frame].key);

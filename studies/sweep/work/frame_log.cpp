@@ -43,7 +43,8 @@ std::uint64_t memory_of(const processors::program::WorkLog& log) {
                         reserved(log.topology.work) + reserved(log.quadrics) + reserved(log.texture_begin) +
                         reserved(log.rows);
   for (const processors::program::LogRow& row : log.rows) {
-    bytes += reserved(row.words) + reserved(row.begin) + reserved(row.entered) + reserved(row.entered_begin);
+    bytes += reserved(row.words) + reserved(row.begin) + reserved(row.entered) + reserved(row.entered_begin) +
+             reserved(row.rays) + reserved(row.rays_begin);
   }
   return bytes;
 }

@@ -58,7 +58,7 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
     options.width = width;
     options.height = height;
     options.record = true;
-    options.entered = entered;
+    options.entered = options.ray_words = entered;
     if (options.max_depth == program::RenderOptions{}.max_depth) {
       options.max_depth = 3;
     }

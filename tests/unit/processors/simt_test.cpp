@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "processors/program/ray_grid.h"
 #include "processors/replay/replay.h"
 #include "simt_logs.h"
 #include "tests/support/first_difference.h"
@@ -132,13 +133,26 @@ TEST(Simt, EnteredChildrenAreBesideTheLog) {
     ASSERT_EQ(with[i].has_entered(),
               accel::walks_bvh(with[i].traversal) && with[i].order == accel::WalkOrder::depth_first);
     ASSERT_FALSE(without[i].has_entered());
+    ASSERT_TRUE(with[i].has_ray_words());
+    ASSERT_FALSE(without[i].has_ray_words());
     for (std::uint32_t y = 0; y < with[i].height; ++y) {
       ASSERT_TRUE(with[i].rows[y].words == without[i].rows[y].words);
       ASSERT_TRUE(with[i].rows[y].begin == without[i].rows[y].begin);
+      for (std::uint32_t x = 0; x < with[i].width; ++x) {
+        std::size_t rays = 0;
+        const std::span<const std::uint32_t> words = with[i].pixel(x, y);
+        for (std::size_t at = 0; at < words.size(); at += step_words(&words[at])) {
+          rays += step_of(words[at]) == Step::ray ? 1 : 0;
+        }
+        ASSERT_EQ(with[i].ray_words(x, y).size(), rays);
+      }
     }
     MachineConfig machine;
     machine.kind = NodeKind::simt;
     machine.prefetch.stack = 2;
+    EXPECT_THROW((void)replay::replay(without[i], machine), sim::UserError);
+    machine.prefetch.stack = 0;
+    machine.rt.sort = RaySort::origin;
     EXPECT_THROW((void)replay::replay(without[i], machine), sim::UserError);
   }
 }
@@ -371,6 +385,47 @@ TEST(Simt, AStackBeyondTheChipIsWrittenOnceAndReadBackOnce) {
   }
 }
 
+// A warp that is alone waits for nobody, and its rays of one kind stay in the order of their pixels.
+TEST(Simt, SortingALoneWarpTakesItsCyclesAndOneMore) {
+  for (const std::int64_t cycles : {0, 1, 9}) {
+    for (const std::uint32_t rays : {7U, 100U}) {
+      const std::uint32_t lanes = 7;
+      const std::int64_t turns = 3;
+      const WorkLog log = row_of(20, 4, [](std::uint32_t x) { return x / 2; });
+      MachineConfig machine = one_warp(lanes, 2, 5);
+      const MachineResult plain = replay::replay(log, machine);
+      machine.rt.sort = RaySort::kind;
+      machine.rt.sort_rays = rays;
+      machine.rt.sort_cycles = cycles;
+      const MachineResult sorted = replay::replay(log, machine);
+      const SimtCounts& before = plain.simt.nodes.at(0);
+      const SimtCounts& now = sorted.simt.nodes.at(0);
+      EXPECT_EQ(now.sorted_warps, turns);
+      EXPECT_EQ(now.sorted_rays, 20);
+      EXPECT_EQ(now.unit_cycles, before.unit_cycles);
+      EXPECT_EQ(now.accesses, before.accesses);
+      EXPECT_EQ(now.lanes_unit, before.lanes_unit + 20 * (cycles + 1));
+      EXPECT_EQ(sorted.end, plain.end + turns * (cycles + 1) * machine.clock.period());
+    }
+  }
+}
+
+// By hand, after docs/rt-unit.md.
+TEST(Simt, RaysAreWordsByTheirCells) {
+  scenes::Bounds box;
+  box.include({0.0, 0.0, 0.0});
+  box.include({32.0, 32.0, 32.0});
+  const RayGrid grid(box);
+  const auto word = [&](const glm::dvec3& origin, const glm::dvec3& direction) {
+    return grid.word({origin, direction});
+  };
+  // Columns 1, 2 and 4 along x, y and z; octant 2, row 2, column 1.
+  EXPECT_EQ(word({1.5, 2.5, 4.5}, {1.0, -2.0, 5.0}), (1U + 16U + 256U) * 512U + 2U * 64U + 2U * 8U + 1U);
+  EXPECT_EQ(word({-1.0, -1.0, -1.0}, {0.0, 0.0, 1.0}), 0U);
+  EXPECT_EQ(word({99.0, 99.0, 99.0}, {-1.0, 0.0, 0.0}), 0x7fffU * 512U + 64U + 7U);
+  EXPECT_EQ(word({32.0, 0.0, 0.0}, {0.0, -1.0, -1e-9}), 0x1249U * 512U + 6U * 64U + 7U * 8U);
+}
+
 // Rays that visit branches and leaves of one entry, with a surface point now and then.
 WorkLog walks(marti::test::Random& random) {
   using marti::test::pick;
@@ -530,6 +585,21 @@ TEST(Simt, RefusesWhatCannotBe) {
          m.kind = NodeKind::core;
        }},
       {"prefetch.stack", [](MachineConfig& m) { m.prefetch.stack = 1; }},  // of a log of an octree
+      {"rt.sort_rays", [](MachineConfig& m) { m.rt.sort_rays = 0; }},
+      {"rt.sort_rays", [](MachineConfig& m) { m.rt.sort_rays = most_sorted_rays + 1; }},
+      {"rt.sort_cycles", [](MachineConfig& m) { m.rt.sort_cycles = -1; }},
+      {"rt.sort",
+       [](MachineConfig& m) {
+         m.rt.sort = RaySort::kind;
+         m.rt.warps = 0;
+       }},
+      {"rt.sort",
+       [](MachineConfig& m) {
+         m.rt.sort = RaySort::kind;
+         m.kind = NodeKind::core;
+       }},
+      {"rt.sort",
+       [](MachineConfig& m) { m.rt.sort = RaySort::direction; }},  // of a log without words of rays
       {"rt.stack", [](MachineConfig& m) { m.rt.stack = most_stack_entries + 1; }},
       {"rt.stack",
        [](MachineConfig& m) {

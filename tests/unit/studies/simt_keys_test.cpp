@@ -40,6 +40,15 @@ TEST(SimtKeys, RefuseWhatTheyCannotHaveWithPlaceAndWhatToSet) {
        "machine.toml:4: prefetch.stack: is for warps in a ray-tracing unit; set rt.warps"},
       {bvh + "prefetch.stack = 2\nrt.order = 'breadth_first'\n",
        "machine.toml:3: prefetch.stack: must be 0 with rt.order"},
+      {"node.kind = 'core'\nrt.sort = 'kind'\n", "machine.toml:2: rt.sort: "},
+      {"node.kind = 'simt'\nrt.warps = 0\nrt.sort = 'kind'\n", "machine.toml:3: rt.sort: "},
+      {"node.kind = 'simt'\nrt.sort = 'colour'\n", "machine.toml:2: rt.sort: "},
+      {"node.kind = 'simt'\nrt.sort_rays = 64\n", "machine.toml:2: rt.sort_rays: "},
+      {"node.kind = 'simt'\nrt.sort_cycles = 64\n", "machine.toml:2: rt.sort_cycles: "},
+      {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_rays = 0\n", "machine.toml:3: rt.sort_rays: "},
+      {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_rays = 4097\n", "machine.toml:3: rt.sort_rays: "},
+      {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_cycles = -1\n", "machine.toml:3: rt.sort_cycles: "},
+      {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_rays = 64\nrt.sort_cycles = 0\n", "no UserError"},
       {"node.kind = 'core'\nrt.stack = 2\n", "machine.toml:2: rt.stack: "},
       {"node.kind = 'simt'\nrt.stack = 2\n", "machine.toml:2: rt.stack: must be 0 with structure.kind"},
       {bvh + "rt.warps = 0\nrt.stack = 2\n", "machine.toml:4: rt.stack: "},
@@ -85,6 +94,10 @@ TEST(SimtKeys, AFrameHasStacksIfAnyOfItsMachinesMayUseThem) {
   ASSERT_EQ(entered.size(), 1U);
   EXPECT_TRUE(entered.front().config.render.entered);
   EXPECT_FALSE(frames_of("machine.nodes = [2, 3]\n").front().config.render.entered);
+  const auto sorted = frames_of("node.kind = ['simt']\nrt.sort = ['none', 'kind', 'direction']\n");
+  ASSERT_EQ(sorted.size(), 1U);
+  EXPECT_TRUE(sorted.front().config.render.ray_words);
+  EXPECT_FALSE(entered.front().config.render.ray_words);
   EXPECT_EQ(frames_of("node.kind = ['simt']\nrt.order = ['depth_first', 'breadth_first']\n").size(), 2U);
 }
 
