@@ -60,6 +60,8 @@ class Engine {
   void run_all(Handler& handler);
 
   [[nodiscard]] Ticks now() const { return now_; }
+  /// Whether an event is pending.
+  [[nodiscard]] bool has_events() const { return !queue_.empty(); }
   [[nodiscard]] std::uint64_t events() const { return events_; }
   void reserve(std::size_t events) { queue_.reserve(events); }
   /// reserve() for events of components below `components` that seldom have more than one each.

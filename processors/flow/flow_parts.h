@@ -26,7 +26,7 @@ enum class FlowEvent : std::uint8_t {
 /// The nodes of all clusters, between which rays move.
 class FlowNodes : public node::NodeArray {
  public:
-  /// After finish(): fills in the nodes' counts; those of the host and the networks are left to the caller.
+  /// Fills in what the nodes have counted; the counts of the host and the networks are left to the caller.
   virtual void report(FlowResult& result) const = 0;
 };
 

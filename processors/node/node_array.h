@@ -41,6 +41,8 @@ class NodeArray : public sim::EventHandler {
   /// The client to plug into cluster `cluster`'s interconnect.
   [[nodiscard]] virtual memory::InterconnectClient& client(std::uint32_t cluster) = 0;
 
+  /// During the run: enters in statistics() what has been counted elsewhere so far. The result is the same.
+  virtual void settle() {}
   /// After the run: when the last node and the last write were done.
   [[nodiscard]] virtual sim::Ticks end() const = 0;
   /// After the run: fills in idle time and the times that follow from counts.

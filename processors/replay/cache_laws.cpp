@@ -41,9 +41,11 @@ std::int64_t reads_beyond_caches(const machine::MachineConfig& config, const Mac
 }
 
 std::int64_t reads_of_memory(const machine::MachineConfig& config, const MachineResult& result) {
-  const bool shared = config.l2.sharing == machine::SecondLevel::shared;
-  return reads_beyond_caches(config, result) + result.build.counts().locks -
-         (shared ? result.l2.counters().hits : 0);
+  // Every read of a cluster asks a shared second level, but what a node reads in its own memory.
+  if (!result.l2.caches.empty() && config.l2.sharing == machine::SecondLevel::shared) {
+    return result.l2.counters().misses + result.build.counts().local_misses;
+  }
+  return reads_beyond_caches(config, result) + result.build.counts().locks;
 }
 
 void check_second_level_laws(const machine::MachineConfig& config, const MachineResult& result) {

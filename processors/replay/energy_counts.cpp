@@ -50,14 +50,14 @@ energy::EnergyCounts energy_counts(const program::WorkLog& log, const machine::M
   counts.hop_bytes = config.network.kind == memory::NetworkKind::ideal ? network.bytes : network.link_bytes;
   counts.memory_reads = reads_of_memory(config, result);
   for (const ClusterResult& cluster : result.clusters) {
-    for (std::size_t channel = 0; channel < cluster.dram.size(); ++channel) {
-      sim::merge(counts.dram, cluster.dram[channel]);
-      counts.memory_reads -= cluster.banks[channel].accesses;
+    for (const memory::DramStatistics& channel : cluster.dram) {
+      sim::merge(counts.dram, channel);
     }
-    // Of the accesses of DRAM, these are not among the reads.
-    const std::int64_t writes = cluster.dram.empty() ? 0 : cluster.interconnect.writes;
-    counts.memory_reads += writes;
-    counts.memory_writes -= writes;
+    if (!cluster.dram.empty()) {
+      // All others are accesses of DRAM.
+      counts.memory_reads = result.build.counts().local_misses;
+      counts.memory_writes = 0;
+    }
   }
   counts.end = result.end;
   return counts;

@@ -4,6 +4,7 @@
 
 #include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
+#include "processors/replay/interval_sampler.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/record_places.h"
@@ -46,29 +47,35 @@ MachineResult replay_flow(const program::WorkLog& log, const machine::MachineCon
         flow::FlowEvent::wake, flow::FlowEvent::admit, flow::FlowEvent::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
-  nodes->start(options.start_seed);
-  nodes->run_all(engine);
+  const auto result_at = [&](sim::Ticks end) {
+    MachineResult result = common_result(config, engine, *nodes, interconnects, layout, end);
+    result.host = host.statistics();
+    result.packets = packets.size();
+    flow::FlowResult& flow = result.flow;
+    flow.memory_bytes.assign(
+        config.all_nodes(), config.placement == machine::Placement::replicated ? layout.database_bytes() : 0);
+    flow.collected = host.collected();
+    flow.most_in_flight = host.most_in_flight();
+    for (const auto& network : networks) {
+      flow.networks.push_back(network->statistics());
+    }
+    nodes->report(flow);
+    flow.rays = host.sent();
+    for (const flow::FlowCounts& node : flow.nodes) {
+      flow.rays += node.made;
+    }
+    return result;
+  };
+  IntervalSampler sampler(options.intervals, engine, *nodes, result_at);
+  sampler.run(options.start_seed);
   nodes->finish();
+  sampler.finish();
 
   if (input.observer != nullptr) {
     input.observer->end(nodes->end());
   }
-  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
-  result.host = host.statistics();
-  result.packets = packets.size();
-  flow::FlowResult& flow = result.flow;
-  flow.memory_bytes.assign(config.all_nodes(),
-                           config.placement == machine::Placement::replicated ? layout.database_bytes() : 0);
-  flow.collected = host.collected();
-  flow.most_in_flight = host.most_in_flight();
-  for (const auto& network : networks) {
-    flow.networks.push_back(network->statistics());
-  }
-  nodes->report(flow);
-  flow.rays = host.sent();
-  for (const flow::FlowCounts& node : flow.nodes) {
-    flow.rays += node.made;
-  }
+  MachineResult result = result_at(nodes->end());
+  result.events -= sampler.events();
   sim::ensure(host.in_flight() == 0, "rays are left over");
   check_conservation(log, config, result);
   check_bounds(config, result);

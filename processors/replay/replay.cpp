@@ -10,6 +10,7 @@
 #include "processors/replay/bounds.h"
 #include "processors/replay/energy_counts.h"
 #include "processors/replay/host_bytes.h"
+#include "processors/replay/interval_sampler.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/record_laws.h"
 #include "processors/replay/replay_parts.h"
@@ -139,6 +140,9 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   }
   sim::ensure(options.path == nullptr || options.observer != nullptr,
               "a critical path is recorded of exact replays that are observed");
+  sim::ensure(options.intervals == nullptr ||
+                  (options.observer != nullptr && options.stripped == nullptr && options.sample == nullptr),
+              "intervals are of whole replays that are observed");
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
@@ -153,16 +157,22 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
         node::EventClass::write, node::EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);
   }
-  nodes->start(options.start_seed);
-  nodes->run_all(engine);
+  const auto result_at = [&](sim::Ticks end) {
+    MachineResult result = common_result(config, engine, *nodes, interconnects, layout, end);
+    result.host = host.statistics();
+    result.packets = packets.size();
+    return result;
+  };
+  IntervalSampler sampler(options.intervals, engine, *nodes, result_at);
+  sampler.run(options.start_seed);
   nodes->finish();
+  sampler.finish();
 
   if (options.observer != nullptr) {
     options.observer->end(nodes->end());
   }
-  MachineResult result = common_result(config, engine, *nodes, interconnects, layout);
-  result.host = host.statistics();
-  result.packets = packets.size();
+  MachineResult result = result_at(nodes->end());
+  result.events -= sampler.events();
   result.left_out = left_out;
   result.pixels = pixels_of(packets, log, options.sample);
   result.packet_figures = nodes->packet_figures();
@@ -247,10 +257,24 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
   if (config.layout.leaf == memory::LeafLayout::inline_records && !accel::walks_bvh(log.traversal)) {
     throw sim::KeyError("layout.leaf", "\"inline\" is for a bvh; use \"list\"");
   }
-  MachineResult result = replay_scheme(log, config, options);
-  result.leaf_records = !accel::walks_bvh(log.traversal);
+  const auto complete = [&](MachineResult& result) {
+    result.leaf_records = !accel::walks_bvh(log.traversal);
+    work_out_energy(log, config, result);
+  };
+  Intervals intervals;
+  ReplayOptions passed_on = options;
+  if (options.intervals != nullptr) {
+    intervals.length = options.intervals->length;
+    intervals.counted = [&](MachineResult result) {
+      complete(result);
+      options.intervals->counted(result);
+    };
+    passed_on.intervals = &intervals;
+    passed_on.step_by_step = true;  // else a node counts much of its work ahead of its time
+  }
+  MachineResult result = replay_scheme(log, config, passed_on);
+  complete(result);
   check_records(log, config, result);
-  work_out_energy(log, config, result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -78,6 +79,16 @@ struct MachineResult {
   [[nodiscard]] cost::TimeSums time() const;
 };
 
+/// What a frame has counted at the end of each of its intervals.
+struct Intervals {
+  sim::Ticks length = 0;  ///< of each interval, at least 1
+  /// Is told the result so far: before the frame begins, with `end` = 0, and then after each whole interval
+  /// of the frame, with the time as `end`. It has what is counted by events before that time, energy included
+  /// and the times of nodes left out. The time that a link or a bank will be held is counted when it is asked
+  /// for.
+  std::function<void(const MachineResult&)> counted;
+};
+
 struct ReplayOptions {
   bool step_by_step = false;     ///< an event for every reference instead of running ahead; same result
   std::uint64_t start_seed = 0;  ///< order in which the nodes' first events are posted; same result
@@ -109,6 +120,9 @@ struct ReplayOptions {
   /// Records the critical path; `observer` must be it or pass all calls on to it. Same result. Not with
   /// `stripped` or `sample`.
   path::PathRecorder* path = nullptr;
+  /// Null: nobody asks for intervals; else the replay is one step by step. Same result. `observer` must be
+  /// there; not with `stripped` or `sample`.
+  const Intervals* intervals = nullptr;
   /// Counts each packet that is handed out; after its stop() the replay throws sim::Stopped at the next one.
   /// Null: nobody waits. Same result.
   sim::WorkMeter* meter = nullptr;

@@ -92,9 +92,9 @@ Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& 
 
 MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,
                             const node::NodeArray& nodes, const Interconnects& interconnects,
-                            const memory::Layout& layout) {
+                            const memory::Layout& layout, sim::Ticks end) {
   MachineResult result;
-  result.end = nodes.end();
+  result.end = end;
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
     result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});

@@ -27,9 +27,10 @@ using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
                                            std::uint8_t memory_class, node::NodeArray& nodes,
                                            path::PathRecorder* path, walk::Observer* observer);
 
-/// The part of the result that all schemes have: nodes after NodeArray::finish(), memory, database.
+/// The part of the result that all schemes have: nodes, memory, database. Of a frame that ends at `end`,
+/// after NodeArray::finish(), or of what it has counted until then.
 [[nodiscard]] MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,
                                           const node::NodeArray& nodes, const Interconnects& interconnects,
-                                          const memory::Layout& layout);
+                                          const memory::Layout& layout, sim::Ticks end);
 
 }  // namespace marti::processors::replay

@@ -23,6 +23,9 @@ void declare_record_keys(sim::Schema& schema) {
       "record.heat_maps", false,
       "write what each pixel cost: heat.exr and three maps in false colours, of cycles, misses and "
       "waits");
+  schema.duration("record.interval", "0 ps", {"0 ps", std::nullopt},
+                  "write what the machine counts in each interval of this length, energy among it; the frame "
+                  "must not have more than 1000 of them; 0: not asked for");
   schema.boolean(
       "record.critical_path", false,
       "find the chain of computing, transfers, messages, bank accesses and dispatches that sets the end of "
@@ -34,6 +37,7 @@ RecordConfig read_record(sim::Config& config, bool has_directory) {
   record.timeline = config.boolean("record.timeline");
   record.heat_maps = config.boolean("record.heat_maps");
   record.critical_path = config.boolean("record.critical_path");
+  record.interval = config.duration("record.interval");
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
     if (!has_directory && config.boolean(key)) {
       config.fail(key, "there is no directory to write to; give one with -o");

@@ -7,12 +7,13 @@
 
 namespace marti::studies::keys {
 
-/// What is recorded; all but the critical path goes to files in the output directory.
+/// What is recorded; timelines and heat maps go to files in the output directory only.
 struct RecordConfig {
   bool timeline = false;
   run::TimelineOptions timeline_options;
   bool heat_maps = false;
   bool critical_path = false;
+  sim::Ticks interval = 0;  ///< 0: no figures by intervals
 };
 
 void declare_record_keys(sim::Schema& schema);

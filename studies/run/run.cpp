@@ -17,6 +17,7 @@
 #include "studies/keys/other_commands.h"
 #include "studies/keys/record_keys.h"
 #include "studies/run/plan/machine_plan.h"
+#include "studies/run/record/interval_figures.h"
 #include "studies/run/record/observers.h"
 #include "studies/run/run_result.h"
 
@@ -123,9 +124,14 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   if (result.machine.count.working_set) {
     observers.add(packets_of_nodes);
   }
+  std::optional<IntervalFigures> intervals;
+  if (record.interval > 0) {
+    observers.add(intervals.emplace(result.machine, record.interval));
+  }
   processors::replay::ReplayOptions options;
   options.observer = observers.empty() ? nullptr : &observers;
-  options.stripped = path ? nullptr : stripped;  // a critical path needs every step
+  options.intervals = intervals ? &intervals->asked() : nullptr;
+  options.stripped = path || intervals ? nullptr : stripped;  // both need every step in its place
   options.path = path ? &*path : nullptr;
   options.meter = run.meter;
   const KeptItems& kept = result.frame_config.keep;
@@ -136,6 +142,9 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   add_entries(result.plan, std::move(entries));
   if (path) {
     result.critical_path = path->path();
+  }
+  if (intervals) {
+    result.intervals = intervals->table(figures::counts_of(result.machine, timed));
   }
   if (result.machine.count.working_set) {
     const std::uint64_t a_thread = processors::passes::working_set_bytes(result.machine);

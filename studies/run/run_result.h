@@ -20,6 +20,7 @@
 #include "studies/run/kept_stripped_logs.h"
 #include "studies/run/record/heat_map.h"
 #include "studies/run/record/timeline.h"
+#include "studies/tables/table.h"
 
 namespace marti::studies::run {
 
@@ -40,9 +41,10 @@ struct RunResult {
   std::optional<processors::replay::Prediction> prediction;
   std::optional<processors::passes::WorkingSet> working_set;  ///< of the timed machine; empty: not asked for
   std::optional<processors::path::CriticalPath>
-      critical_path;                   ///< of the timed machine; empty: not asked for
-  std::unique_ptr<Timeline> timeline;  ///< written, but not under its own name yet; null: not asked for
-  std::unique_ptr<HeatMap> heat_map;   ///< null: not asked for
+      critical_path;                       ///< of the timed machine; empty: not asked for
+  std::unique_ptr<Timeline> timeline;      ///< written, but not under its own name yet; null: not asked for
+  std::unique_ptr<HeatMap> heat_map;       ///< null: not asked for
+  std::optional<tables::Table> intervals;  ///< figures by intervals; empty: not asked for
 
   /// A figure of the timed machine (studies/figures/derived_figures.h), measured against one node.
   [[nodiscard]] std::optional<double> figure(std::string_view name) const {

@@ -44,6 +44,9 @@ void add_files(const run::RunResult& result, tables::PendingFiles& files) {
   if (result.timed.counts.attribution) {
     files.write("attribution.csv", tables::csv_of(attribution_table(*result.timed.counts.attribution)));
   }
+  if (result.intervals) {
+    files.write("intervals.csv", tables::csv_of(*result.intervals));
+  }
   if (result.working_set) {
     const tables::Table table = working_set_table(*result.working_set);
     files.write("working_set.csv", tables::csv_of(table));

@@ -199,6 +199,7 @@ std::string json_of(const run::RunResult& r, const std::map<std::string, std::st
       {"counts", counts_json},
       {"working_set", working_set_json},
       {"critical_path", critical_path_json},
+      {"intervals", intervals_json},
       {"contexts", context_json},
       {"simt", simt_json}};
   for (const auto& [name, json_of_part] : parts) {

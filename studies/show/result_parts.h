@@ -57,6 +57,9 @@ namespace marti::studies::show {
 [[nodiscard]] nlohmann::ordered_json critical_path_json(const run::RunResult& result);
 [[nodiscard]] std::string critical_path_lines(const run::RunResult& result);
 
+/// What the machine counted in each interval of the frame.
+[[nodiscard]] nlohmann::ordered_json intervals_json(const run::RunResult& result);
+
 /// What would make the frame shorter: the sentence, the next best steps, and how many were not replayed.
 [[nodiscard]] nlohmann::ordered_json helps_json(const run::RunResult& result);
 [[nodiscard]] std::string helps_lines(const run::RunResult& result);

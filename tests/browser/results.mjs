@@ -14,7 +14,10 @@ const marti = (...args) => promisify(execFile)(program, args);
 const set = (settings) => settings.flatMap((setting) => ["--set", setting]);
 
 const commands = {
-  run: ["run", join(configs, "marti.toml"), ...set(["scene.source=teapot:4", "image.width=96", "image.height=72"])],
+  run: [
+    ...["run", join(configs, "marti.toml")],
+    ...set(["scene.source=teapot:4", "image.width=96", "image.height=72", "energy.preset=45nm", "record.interval=200us"]),
+  ],
   sweep: ["sweep", join(configs, "sweep-small.toml")],
   study: [
     ...["study", "schemes", join(configs, "schemes.toml")],

@@ -97,7 +97,7 @@ class ReportCommand : public testing::Test {
 TEST_F(ReportCommand, ReportsARun) {
   const fs::path run = made_run(
       " --set count.attribution=true --set count.working_set=true --set record.heat_maps=true"
-      " --set record.critical_path=true --set energy.preset=45nm");
+      " --set record.critical_path=true --set record.interval=100us --set energy.preset=45nm");
   const Outcome made = marti("report " + quoted(run));
   ASSERT_EQ(made.status, 0) << made.output;
   const json result = json::parse(read(run / "result.json"));
@@ -123,7 +123,7 @@ TEST_F(ReportCommand, ReportsARun) {
   EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
   for (const char* name : {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses",
                            "run_level_hit_ratio", "run_waits", "run_tree", "run_level_memory", "run_memory",
-                           "run_path", "run_energy", "run_bandwidth", "working_set"}) {
+                           "run_path", "run_energy", "run_power", "run_intervals", "run_bandwidth", "working_set"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
     EXPECT_NE(page.find("id=\"chart-" + std::string(name) + "\""), std::string::npos) << name;
   }

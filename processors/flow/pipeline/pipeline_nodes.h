@@ -76,6 +76,12 @@ class PipelineNodes final : public PipelineCore {
     }
   }
 
+  void settle() override {
+    for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+      walker_.flush(tallies_[node], statistics_[node]);
+    }
+  }
+
   void finish() override {
     end_nodes();
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {

@@ -88,6 +88,12 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
+  void settle() override {
+    for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+      walker_.flush(Base::tallies_[node], Base::statistics_[node]);
+    }
+  }
+
   void finish() override {
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
       Base::finish_node(node, walker_);

@@ -27,6 +27,20 @@ ReportChart chart_with(std::string_view specification, const std::string& name, 
   return chart;
 }
 
+// Lets the reader choose among the values that a column of the rows has; at first it is that of the first row.
+// The specification knows what is chosen as `choice`.
+void add_choice(Json& spec, const std::string& column, const Json& rows) {
+  Json options = Json::array();
+  for (const Json& row : rows) {
+    if (std::ranges::find(options, row.at(column)) == options.end()) {
+      options.push_back(row.at(column));
+    }
+  }
+  spec["params"] = {{{"name", "choice"},
+                     {"value", options.at(0)},
+                     {"bind", {{"input", "select"}, {"name", column + " "}, {"options", options}}}}};
+}
+
 tables::ColumnType type_of(const std::string& name) {
   return name == "integer" ? tables::ColumnType::integer
          : name == "real"  ? tables::ColumnType::real
@@ -99,6 +113,9 @@ void add_queried(const tables::RunJson& run, ReportData& report) {
     } else {
       report.charts.push_back(chart_with(file, name, meta.at("title"), rows));
       report.charts.back().note = meta.value("note", "");
+      if (meta.contains("choice")) {
+        add_choice(report.charts.back().spec, meta.at("choice"), rows);
+      }
     }
   }
 }

@@ -10,6 +10,7 @@
 // - note: what to look at, in a sentence or two; may be left out
 // - sql: the query that makes the rows, as a list of lines (result_tables.h); without rows the chart is left
 // out
+// - choice: a column of which the reader chooses one value from a list; an expression knows it as `choice`
 // - live: of a sweep, instead of sql: how plots/explorer_rows.js makes the rows; its "fields" or "by" name
 // the
 //   figures that it needs, and without any of them the chart is left out

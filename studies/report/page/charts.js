@@ -27,13 +27,20 @@ marti.charts = (() => {
     return copy;
   }
 
+  /** What the reader has chosen in a chart's lists is chosen in another view of it, too. */
+  function choose(chart, view) {
+    const shown = marti.views[chart.name];
+    for (const { name } of (shown && chart.spec.params) || []) view.signal(name, shown.signal(name));
+  }
+
   async function draw(name) {
     const chart = charts.get(name);
     const place = document.getElementById(`chart-${name}`);
-    const old = marti.views[name];
-    if (old) old.finalize();
     const spec = fitted(chart, place.clientWidth || 560);
-    const view = makeView(spec, marti.theme.inPage, { renderer: "svg", container: place, hover: true });
+    const view = makeView(spec, marti.theme.inPage, { renderer: "svg", hover: true });
+    choose(chart, view);
+    marti.views[name]?.finalize();
+    view.initialize(place);
     view.description(chart.title);
     view.tooltip(marti.tooltip);
     view.addEventListener("click", (_, item) => {
@@ -79,6 +86,7 @@ marti.charts = (() => {
     // A file of its own says what it is about.
     const title = chart.live ? chart.spec.title : martiTitle(chart.spec.title, data.about);
     const view = makeView({ ...chart.spec, title }, marti.theme.inFile, { renderer: "none" });
+    choose(chart, view);
     const svg = await view.toSVG();
     view.finalize();
     save(`${chart.name}.svg`, "image/svg+xml", svg);

@@ -32,7 +32,11 @@ void refuse_records(sim::Config& config) {
       config.fail(key, "a sweep records nothing beside its counters; leave it out, or use `marti run`");
     }
   }
-  (void)keys::read_record(config, true);
+  if (keys::read_record(config, true).interval > 0) {
+    config.fail("record.interval",
+                "a sweep keeps what its machines count in whole frames; leave it out, or "
+                "use `marti run`");
+  }
   if (config.boolean("count.working_set")) {
     config.fail("count.working_set", "a sweep keeps no working sets; leave it out, or use `marti run`");
   }

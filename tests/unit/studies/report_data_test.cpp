@@ -217,10 +217,10 @@ TEST(AxisEffects, AreTheFactorsOfAProduct) {
   AxisEffects all = effects_of(1.0);
   EXPECT_NEAR(all.axes[0].fastest_by, 0.5, 1e-12) << "4 nodes by the geometric mean of 1, 2 and 4";
   EXPECT_EQ(effects_text(all), "machine.nodes 4.00 times, cache.size 1.25 times");
-  all.noise = 0.26;
+  all.noise = {0.26};
   EXPECT_EQ(effects_text(all),
             "machine.nodes 4.00 times, one axis no more than another order of packets, 26.00 %");
-  all.noise = 3.1;
+  all.noise = {3.1};
   EXPECT_EQ(effects_text(all), "2 axes no more than another order of packets, 310.00 %");
 }
 
@@ -229,7 +229,7 @@ TEST(Noise, IsTheShareWithinWhichOtherPointsAreNotTold) {
   EXPECT_EQ(within_noise(times, 0.0), 1U) << "an equal frame is not told at all";
   EXPECT_EQ(within_noise(times, 0.02), 2U);
   EXPECT_EQ(within_noise(times, 1.0), 3U);
-  EXPECT_EQ(fastest_noise_text(0.004, 2),
+  EXPECT_EQ(fastest_noise_text({0.004}, 2),
             "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that");
 }
 
@@ -453,6 +453,9 @@ RunJson whole_result() {
         {"level": 0, "record": "material", "references": 9, "misses": 9},
         {"level": 1, "record": "node", "references": 4, "misses": 3}]},
       "critical_path": {"time_ps": {"work": 6, "wait": 4, "nothing": 0}},
+      "intervals": {"count": 2, "columns": {"from_ps": {"unit": "ps", "values": [0, 8]},
+        "to_ps": {"unit": "ps", "values": [8, 10]}, "misses": {"unit": "1", "values": [3, null]},
+        "energy_l1": {"unit": "fJ", "values": [4, 2]}, "power": {"unit": "W", "values": [0.5, 0.25]}}},
       "what_helps": {"resources": [{"step": {"text": "machine.nodes 2 -> 4", "saved": 0.25, "most_saved": 0.5,
         "price": null}, "best": null}]},
       "per_cluster": [
@@ -592,6 +595,10 @@ TEST(RunCharts, AreThoseOfTheResult) {
                          {"record":"triangles","records":3,"bytes":144},
                          {"record":"spheres, cylinders, cones","records":3,"bytes":120},
                          {"record":"materials","records":1,"bytes":64}])"},
+      {"run_power", R"([{"part":"l1","length_us":8e-6,"end_us":1e-5,"values":"4,2"}])"},
+      {"run_intervals", R"([{"figure":"power, W","length_us":8e-6,"end_us":1e-5,"values":"0.5,0.25"},
+                            {"figure":"misses","length_us":8e-6,"end_us":1e-5,"values":"3,null"},
+                            {"figure":"energy l1, fJ","length_us":8e-6,"end_us":1e-5,"values":"4,2"}])"},
       {"run_path", R"([{"what":"work","ps":6,"share":0.6},{"what":"wait","ps":4,"share":0.4}])"}};
   std::size_t found = 0;
   for (const ReportChart& chart : report.charts) {
