@@ -213,8 +213,6 @@ void join(const Pair& pair, const ComparedResult& a, const ComparedResult& b, Co
   found.equal_figures = found.equal.size();
   found.a.helps = a.helps;
   found.b.helps = b.helps;
-  found.a.noise = a.noise;
-  found.b.noise = b.noise;
 }
 
 void sort_points(Comparison& found) {
@@ -282,6 +280,7 @@ Comparison compared(Results& a, Results& b) {
   found.a = side_of(a);
   found.b = side_of(b);
   found.sweep_is_a = a.is_sweep();
+  found.noise = larger(a.noise(), b.noise());
   if (a.is_sweep() || b.is_sweep()) {
     found.axes = (a.is_sweep() ? a : b).axes();
   }

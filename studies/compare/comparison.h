@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,8 +28,7 @@ enum class Join : std::uint8_t {
 struct Side {
   std::string name;  ///< Results::name()
   std::string version;
-  std::string helps{};  ///< ComparedResult, like `noise`; of Join::one
-  std::optional<double> noise{};
+  std::string helps{};      ///< ComparedResult::helps; of Join::one
   std::size_t planned = 0;  ///< points
   std::size_t timed = 0;
   std::vector<std::int64_t> alone{};  ///< ordinals of points that only this sweep has, ascending
@@ -71,6 +71,7 @@ struct Comparison {
   /// times comes first, in either direction. Then by ordinal.
   std::vector<JoinedPoint> points;
   std::size_t comparable = 0;       ///< so many of `points` are of equal frames
+  sweep::Noise noise;               ///< the larger Results::noise()
   std::size_t nearest = 0;          ///< the point that differs least
   std::vector<Difference> frame;    ///< settings in which frames differ, each as the first point has it
   std::vector<Difference> alike;    ///< settings that differ at every joined point by the same values
@@ -85,6 +86,16 @@ struct Comparison {
   std::size_t equal_figures = 0;
   std::size_t equal_points = 0;  ///< in which none of `figures` differs
 
+  /// Whether the frame times differ, but by no more than the noise.
+  [[nodiscard]] bool within_noise(const JoinedPoint& of) const {
+    return of.end_a != of.end_b && std::abs(of.ratio() - 1.0) <= noise.band;
+  }
+  /// How many of the comparable points are so.
+  [[nodiscard]] std::size_t points_within_noise() const {
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(comparable),
+                      [this](const JoinedPoint& point) { return within_noise(point); }));
+  }
   /// The ordinal and the frame time that the sweep has for a point.
   [[nodiscard]] std::int64_t point(const JoinedPoint& of) const { return sweep_is_a ? of.a : of.b; }
   [[nodiscard]] std::int64_t end(const JoinedPoint& of) const { return sweep_is_a ? of.end_a : of.end_b; }

@@ -23,8 +23,9 @@ struct ComparedResult {
   std::string version;                          ///< of the program that made it
   std::map<std::string, std::string> settings;  ///< values as in a TOML file
   Figures figures;
-  std::string scene_hash;       ///< empty where it is not recorded: a run does not
-  std::optional<double> noise;  ///< share of its frame time that another order of packets changes, if known
+  std::string scene_hash;  ///< empty where it is not recorded: a run does not
+  std::optional<double>
+      noise;          ///< share of its frame time that another order of packets changes, of a run, if known
   std::string helps;  ///< what would make its frame shorter, in a sentence; empty where it is not recorded
 };
 

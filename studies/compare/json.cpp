@@ -76,6 +76,7 @@ void add_points(const Comparison& found, Json& object) {
                      {"equal_machines", found.equal_points},
                      {"points_only_in_a", found.a.alone},
                      {"points_only_in_b", found.b.alone},
+                     {"points_within_noise", found.points_within_noise()},
                      {"points_of_other_frames", found.points.size() - found.comparable},
                      {"mean_ratio", mean ? Json(*mean) : Json()}});
   if (found.join == Join::each) {
@@ -105,6 +106,7 @@ std::string json_of(const Comparison& found, bool all) {
                  {"b", side(found.b)},
                  {"verdict", verdict_of(found)},
                  {"what_helps", helps_of(found)},
+                 {"noise", found.noise.band},
                  {"same_frame", found.comparable > 0},
                  {"frame_settings", settings_json(found.frame)},
                  {"settings", settings_json(found.alike)},

@@ -97,7 +97,6 @@ ComparedResult read_point(const sweep::SweepReader& store, const sweep::StoredPo
   const std::map<std::int64_t, sweep::Advice> advice = store.advice();
   if (const auto measured = advice.find(point.machine); measured != advice.end()) {
     result.helps = measured->second.sentence;
-    result.noise = measured->second.noise;
   }
   return result;
 }
@@ -146,6 +145,20 @@ const ComparedResult& Results::at(const sweep::StoredPoint& point, bool derived)
     last_point_ = point.ordinal;
   }
   return last_;
+}
+
+sweep::Noise Results::noise() const {
+  if (!store_) {
+    return {last_.noise.value_or(0.0)};
+  }
+  if (!is_sweep_) {
+    const std::map<std::int64_t, sweep::Advice> advice = store_->advice();
+    const auto measured = advice.find(points_[0].machine);
+    if (measured != advice.end() && measured->second.noise) {
+      return {*measured->second.noise};
+    }
+  }
+  return store_->noise();
 }
 
 void Results::keep_what_sweeps_have(bool derived) {

@@ -39,6 +39,9 @@ class Results {
     return store_->settings(point.machine);
   }
 
+  /// Of a run or a point whose noise is measured its own, of others of a store the largest that it has.
+  [[nodiscard]] sweep::Noise noise() const;
+
   /// Removes from a run what cannot be compared with a sweep: figures that are measured against another
   /// machine, which a run and a sweep do not choose alike, unless `derived` all others that are not counted,
   /// and settings that a sweep does not keep, because no result depends on them.

@@ -67,16 +67,17 @@ std::string changes_sentence(const Comparison& found) {
                                      found.join == Join::one ? "" : " and of all points", sim::listed(parts));
 }
 
-// Whether the difference is less than another order of packets makes, where that is known of either result.
-std::string noise_sentence(const Comparison& found, std::int64_t a, std::int64_t b) {
-  const double band = std::max(found.a.noise.value_or(0.0), found.b.noise.value_or(0.0));
-  const double difference = std::abs(static_cast<double>(b) / static_cast<double>(a) - 1.0);
-  if (a == b || difference > band) {
+// Where differences are no more than the noise, where that is known of either result.
+std::string noise_sentence(const Comparison& found) {
+  const std::size_t points = found.points_within_noise();
+  if (points == 0) {
     return {};
   }
-  return fmt::format(
-      "That is no more than another order of packets does, {}: it does not say which machine is faster.",
-      tables::percent(band));
+  const bool one = found.join == Join::one;
+  return fmt::format("{} no more than {} does, {}{}: it does not say which machine is faster{}.",
+                     one ? "That is" : fmt::format("At {} of these points the difference is", points),
+                     found.noise.cause(), one ? "" : "up to ", tables::percent(found.noise.band),
+                     one ? "" : " there");
 }
 
 std::string misses_sentence(const Comparison& found) {
@@ -132,7 +133,7 @@ Sentences verdict_of_two(const Comparison& found) {
         tables::seconds(b))};
   }
   Sentences sentences = {
-      speed_text(a, b) + ".", noise_sentence(found, a, b), a == b ? "" : changes_sentence(found),
+      speed_text(a, b) + ".", noise_sentence(found), a == b ? "" : changes_sentence(found),
       misses_sentence(found),
       found.alike.empty() ? "No setting differs." : "What differs: " + settings_sentence(found.alike) + "."};
   std::erase(sentences, "");
@@ -149,6 +150,7 @@ void say_which_is_faster(const Comparison& found, Sentences& sentences) {
                                   count([](const JoinedPoint& point) { return point.end_b < point.end_a; }),
                                   count([](const JoinedPoint& point) { return point.end_b == point.end_a; }),
                                   count([](const JoinedPoint& point) { return point.end_b > point.end_a; })));
+  sentences.push_back(noise_sentence(found));
   const auto [best, worst] = std::ranges::minmax_element(points, {}, &JoinedPoint::ratio);
   const auto say = [&](const char* what, const JoinedPoint& point) {
     sentences.push_back(fmt::format("B {} most at {}: {}.", what, point_text(found, point),
@@ -164,8 +166,8 @@ void say_which_is_faster(const Comparison& found, Sentences& sentences) {
     sentences.push_back(fmt::format("In the geometric mean B takes {} times as long as A.",
                                     tables::times(*mean_ratio(found))));
     sentences.push_back(changes_sentence(found));
-    std::erase(sentences, "");
   }
+  std::erase(sentences, "");
 }
 
 // The machine of a sweep that is most like the result's.

@@ -140,7 +140,7 @@ std::string effects_text(const AxisEffects& effects) {
   std::vector<std::string> axes;
   std::size_t small = 0;
   for (const AxisEffect& axis : effects.axes) {
-    if (axis.ratio() <= 1.0 + effects.noise) {
+    if (axis.ratio() <= 1.0 + effects.noise.band) {
       ++small;
     } else if (axes.size() < most_named) {
       axes.push_back(fmt::format("{} {:.2f} times", axis.axis, axis.ratio()));
@@ -151,11 +151,11 @@ std::string effects_text(const AxisEffects& effects) {
     text += fmt::format(", {} more", effects.axes.size() - small - most_named);
   }
   if (small > 0) {
-    text += fmt::format("{}{} no more than another order of packets, {}", text.empty() ? "" : ", ",
-                        small == 1 ? "one axis" : fmt::format("{} axes", small),
-                        tables::figure_text(effects.noise, "fraction", "-"));
+    text += fmt::format("{}{} no more than {}, {}", text.empty() ? "" : ", ",
+                        small == 1 ? "one axis" : fmt::format("{} axes", small), effects.noise.cause(),
+                        tables::figure_text(effects.noise.band, "fraction", "-"));
   }
-  if (!effects.interactions.empty()) {
+  if (!effects.interactions.empty() && effects.interactions.front().ratio > 1.0 + effects.noise.band) {
     const Interaction& largest = effects.interactions.front();
     text += fmt::format("; {} and {} together {:.2f} times", largest.first, largest.second, largest.ratio);
   }

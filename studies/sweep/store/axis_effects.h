@@ -35,8 +35,8 @@ struct Interaction {
 struct AxisEffects {
   std::vector<AxisEffect> axes;  ///< the largest first
   std::vector<Interaction>
-      interactions;    ///< the largest first; those that are larger than the least of `axes`
-  double noise = 0.0;  ///< SweepReader::noise(): an axis that changes less is not told from chance
+      interactions;  ///< the largest first; those that are larger than the least of `axes`
+  Noise noise;       ///< SweepReader::noise(): an axis that changes less is not told from chance
 };
 
 /// `times` has the frame time of each point, above 0. Axes of one value have no effect and are left out.
@@ -45,7 +45,8 @@ struct AxisEffects {
 [[nodiscard]] AxisEffects axis_effects(const SweepReader& reader);
 
 /// "machine.nodes 12.80 times, cache.size 1.40 times; machine.nodes and cache.size together 1.10 times",
-/// without a full stop; empty without axes. Axes within the noise are counted, not named.
+/// without a full stop; empty without axes. Axes within the noise are counted, not named, and what two
+/// axes do together within it is left out.
 [[nodiscard]] std::string effects_text(const AxisEffects& effects);
 
 }  // namespace marti::studies::sweep

@@ -118,9 +118,9 @@ std::size_t within_noise(std::span<const double> times, double noise) {
          1;
 }
 
-std::string fastest_noise_text(double noise, std::size_t others) {
-  return fmt::format("another order of packets changes its frame by up to {}, and {} within that",
-                     tables::figure_text(noise, "fraction", "-"),
+std::string fastest_noise_text(const Noise& noise, std::size_t others) {
+  return fmt::format("{} changes its frame by up to {}, and {} within that", noise.cause(),
+                     tables::figure_text(noise.band, "fraction", "-"),
                      others == 0 ? "no other point is"
                      : others == 1
                          ? "1 other point is"
@@ -156,9 +156,9 @@ std::string fastest_text(const SweepReader& reader) {
   if (of_least == nullptr) {
     return {};
   }
-  if (of_least->noise) {
-    text +=
-        "noise         " + fastest_noise_text(*of_least->noise, within_noise(times, *of_least->noise)) + "\n";
+  const Noise noise = larger({of_least->noise.value_or(0.0)}, reader.noise_of_seeds());
+  if (of_least->noise || noise.of_seeds) {
+    text += "noise         " + fastest_noise_text(noise, within_noise(times, noise.band)) + "\n";
   }
   return text + "what helps    " + of_least->sentence + "\n";
 }

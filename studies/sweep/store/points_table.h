@@ -27,7 +27,7 @@ namespace marti::studies::sweep {
 [[nodiscard]] std::size_t within_noise(std::span<const double> times, double noise);
 
 /// "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that".
-[[nodiscard]] std::string fastest_noise_text(double noise, std::size_t others);
+[[nodiscard]] std::string fastest_noise_text(const Noise& noise, std::size_t others);
 
 /// Which points are worth their price.
 struct BestPoints {

@@ -134,8 +134,29 @@ std::map<std::int64_t, Advice> SweepReader::advice() const {
   return all;
 }
 
-double SweepReader::noise() const {
-  return connection_.value<double>("SELECT MAX(noise) FROM advice").value_or(0.0);
+Noise SweepReader::noise_of_seeds() const {
+  Noise noise{0.0, true};
+  const auto seed = std::ranges::find(axes_, "image.seed");
+  if (seed == axes_.end()) {
+    return noise;
+  }
+  std::map<std::vector<tables::Cell>, std::pair<double, double>> times;  // the shortest and the longest
+  const std::vector<std::string> figures = {"end"};
+  for_each_point(figures, [&](const StoredPoint& point, std::span<const tables::Cell> cells) {
+    if (const std::optional<double> end = tables::number_of(cells[0])) {
+      std::vector<tables::Cell> others = point.values;
+      others.erase(others.begin() + (seed - axes_.begin()));
+      auto& [shortest, longest] = times.try_emplace(std::move(others), *end, *end).first->second;
+      shortest = std::min(shortest, *end);
+      longest = std::max(longest, *end);
+      noise.band = shortest > 0.0 ? std::max(noise.band, longest / shortest - 1.0) : noise.band;
+    }
+  });
+  return noise;
+}
+
+Noise SweepReader::noise() const {
+  return larger({connection_.value<double>("SELECT MAX(noise) FROM advice").value_or(0.0)}, noise_of_seeds());
 }
 
 void SweepReader::for_each_point(

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,18 @@ struct Advice {
   std::optional<double> noise{};
 };
 
+/// By what share of a frame time it changes for nothing that a machine is: what differs by less may be
+/// chance.
+struct Noise {
+  double band = 0.0;      ///< 0 where none was measured
+  bool of_seeds = false;  ///< by another seed of the image; else by another order of packets
+  /// "another order of packets".
+  [[nodiscard]] std::string_view cause() const {
+    return of_seeds ? "another seed of the image" : "another order of packets";
+  }
+  [[nodiscard]] friend Noise larger(const Noise& a, const Noise& b) { return a.band < b.band ? b : a; }
+};
+
 /// False when the file is missing or empty, as a sweep that was killed at once leaves it.
 [[nodiscard]] bool is_begun(const std::filesystem::path& store);
 
@@ -71,9 +84,11 @@ class SweepReader {
 
   /// By the ids of machines: of the fastest and others that no other beats, once the sweep has ended.
   [[nodiscard]] std::map<std::int64_t, Advice> advice() const;
-  /// The largest noise of these machines; 0 where none was measured. What differs by less than that may be
-  /// chance.
-  [[nodiscard]] double noise() const;
+  /// Where image.seed is an axis: the most by which points differ that differ in nothing else, as a share of
+  /// the shortest of their frame times. Else none.
+  [[nodiscard]] Noise noise_of_seeds() const;
+  /// The largest noise: of seeds, and of the machines that have advice.
+  [[nodiscard]] Noise noise() const;
 
   /// The names of all figures of a point: axes, cost, what is derived (view summary), and all counters.
   [[nodiscard]] const std::vector<std::string>& figures() const { return figures_; }

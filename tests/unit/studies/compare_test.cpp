@@ -167,6 +167,25 @@ TEST(Compare, SweepsAreMatchedBySettings) {
   EXPECT_NE(text.find("+100.00 %"), std::string::npos) << text;
 }
 
+TEST(Compare, PointsWithinTheNoiseAreCounted) {
+  const TemporaryDirectory directory;
+  const fs::path a = directory.path() / "a" / "results.sqlite";
+  const fs::path b = directory.path() / "b" / "results.sqlite";
+  test::write_store_of_seeds(a, {1000, 1020, 1010, 500, 500, 500});
+  test::write_store_of_seeds(b, {1010, 1020, 1000, 500, 505, 520});
+  const json found = json::parse(compare_results(a.string(), b.string(), {true, false}));
+  EXPECT_NEAR(found["noise"].get<double>(), 0.04, 1e-12);
+  EXPECT_EQ(found["points_within_noise"], 4) << "two are equal";
+  EXPECT_NE(
+      compare_results(a.string(), b.string())
+          .find("At 4 of these points the difference is no more than another seed of the image does, up "
+                "to 4.00 %: it does not say which machine is faster there."),
+      std::string::npos);
+  const json changed =
+      json::parse(compare_results((a.parent_path()).string() + ":0", b.string(), {true, false}));
+  EXPECT_GT(changed["points_within_noise"], 0);
+}
+
 // Settings by name as A and B have them.
 std::map<std::string, std::pair<json, json>> settings_of(const json& list) {
   std::map<std::string, std::pair<json, json>> settings;

@@ -133,4 +133,19 @@ void write_store(const std::filesystem::path& file, const studies::sweep::SweepP
   store.close();
 }
 
+/// A store whose point i has seed i % 3 of the image and i / 3 + 1 nodes, and a frame of `ends`[i].
+inline void write_store_of_seeds(const std::filesystem::path& file, const std::vector<std::int64_t>& ends) {
+  studies::sweep::SweepPlan plan = made_plan(ends.size());
+  plan.axes = {"image.seed", "machine.nodes"};
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    plan.points[i].values = {static_cast<std::int64_t>(i % 3), static_cast<std::int64_t>(i / 3 + 1)};
+    plan.machines[i].frame = 0;
+  }
+  write_store(file, plan, [&](std::size_t machine) {
+    studies::sweep::SweepRow row = plain_row(machine);
+    row.counters[0] = ends[machine];
+    return std::optional(row);
+  });
+}
+
 }  // namespace marti::test

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "sim/error.h"
+#include "studies/sweep/store/axis_effects.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/version.h"
 #include "tests/support/temporary_directory.h"
@@ -116,6 +117,22 @@ TEST(SweepReader, DerivesRatios) {
   // Every figure that is named can be asked for.
   const std::vector<std::string> all = reader.figures();
   EXPECT_NO_THROW(reader.for_each_point(all, [](const StoredPoint&, std::span<const Cell>) {}));
+}
+
+TEST(SweepReader, PointsOfOtherSeedsAreNoise) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "results.sqlite";
+  test::write_store_of_seeds(file, {1000, 1010, 1005, 530, 500, 510});
+  const SweepReader reader(file);
+  EXPECT_NEAR(reader.noise().band, 0.06, 1e-12) << "of two nodes, which differ most";
+  EXPECT_EQ(reader.noise().cause(), "another seed of the image");
+  const AxisEffects effects = axis_effects(reader);
+  ASSERT_EQ(effects.axes.size(), 2U);
+  EXPECT_EQ(effects_text(effects),
+            "machine.nodes 1.96 times, one axis no more than another seed of the image, 6.00 %");
+  const fs::path other = directory.path() / "other" / "results.sqlite";
+  test::write_store(other, made_plan(machines), made_row);
+  EXPECT_EQ(SweepReader(other).noise_of_seeds().band, 0.0) << "the seed is no axis";
 }
 
 TEST(SweepReader, RefusesWhatIsNoStore) {
