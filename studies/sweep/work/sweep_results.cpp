@@ -8,6 +8,14 @@
 
 namespace marti::studies::sweep {
 
+namespace {
+
+// The first machines carry what is done for all, and those that other threads have begun: after one of a
+// thousand the estimate was five times what the sweep took, after sixteen at most half as much again.
+constexpr std::size_t enough_to_tell = 16;
+
+}  // namespace
+
 SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress,
                            const sim::WorkMeter* meter)
     : store_(store), progress_(progress), plan_(plan), meter_(meter), last_(sim::process_cpu_seconds()) {
@@ -20,6 +28,7 @@ SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& p
     machines_.left += machines[machine] ? 0.0 : plan.frames[plan.machines[machine].frame].rays();
   }
   saved_ = static_cast<std::size_t>(std::ranges::count(machines, true));
+  to_time_ = machines.size() - saved_;
   progress_.begin(plan.machines.size(), saved_, plan.frames.size(),
                   static_cast<std::size_t>(std::ranges::count(frames, true)));
 }
@@ -31,7 +40,7 @@ double SweepResults::taken() {
 }
 
 std::int64_t SweepResults::nanoseconds_left() const {
-  return machines_.done == 0.0
+  return timed_ < std::clamp<std::size_t>(to_time_ / 4, 1, enough_to_tell)
              ? 0
              : static_cast<std::int64_t>(1e9 * (frames_.seconds_left() + machines_.seconds_left()));
 }
@@ -55,6 +64,7 @@ void SweepResults::timed(std::size_t machine, const SweepRow& row, std::int64_t 
   const std::lock_guard lock(mutex_);
   store_.add_result(machine, row, cpu_nanoseconds);
   ++saved_;
+  ++timed_;
   machines_.add(plan_.frames[plan_.machines[machine].frame].rays(), taken());
   progress_.timed(nanoseconds_left());
   end_if_stopped();

@@ -48,7 +48,7 @@ class SweepResults {
   void end_if_stopped() const;
   /// Processor time since the last result.
   [[nodiscard]] double taken();
-  /// 0 until a machine was timed.
+  /// 0 until enough machines were timed to tell.
   [[nodiscard]] std::int64_t nanoseconds_left() const;
 
   std::mutex mutex_;  // of all below
@@ -57,7 +57,9 @@ class SweepResults {
   const SweepPlan& plan_;
   const sim::WorkMeter* meter_;
   std::size_t saved_ = 0;
-  double last_;  // processor time of the process when the last result came
+  std::size_t to_time_ = 0;  // machines of the plan that were not there at first
+  std::size_t timed_ = 0;    // of these
+  double last_;              // processor time of the process when the last result came
   Kind frames_;
   Kind machines_;
 };
