@@ -8,6 +8,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <system_error>
 
 #include "sim/error.h"
 #include "sim/made_directory.h"
@@ -55,6 +56,8 @@ decltype(auto) translated(const Work& work) {
     throw Error(sim::shown(error.what(), sim::all_shown));
   } catch (const sim::Stopped&) {
     throw Interrupted();
+  } catch (const std::system_error& error) {  // of threads and of file systems
+    throw Error(error.what());
   }
 }
 
@@ -87,6 +90,9 @@ auto interruptible(const KeepGoing& keep_going, const Work& work) {
 }
 
 sim::Config read(const sim::Schema& schema, const std::string& config, const Settings& settings) {
+  if (config == "-") {
+    throw sim::UserError("-: standard input is for the program; give the name of a file");
+  }
   return config.empty() ? sim::Config::from_text(schema, "", "defaults", settings)
                         : keys::read_config(schema, config, settings);
 }
@@ -335,6 +341,10 @@ bool Sweep::complete() const { return data_->complete; }
 
 Table Sweep::best(const std::string& figure, std::optional<double> budget) const {
   return translated([&] {
+    const figures::Better better = figures::figure_named(figure).better;
+    if (better != figures::Better::lower && better != figures::Better::higher) {
+      throw sim::UserError("of " + figure + " neither a lower nor a higher value is better");
+    }
     const sweep::SweepReader reader(fs::path(data_->directory) / tables::database_name);
     return table_of(sweep::best_points(reader, figure, budget).front);
   });
@@ -352,8 +362,9 @@ const std::vector<Table>& Study::tables() const { return data_->tables; }
 const std::string& Study::summary() const { return data_->summary; }
 std::string Study::report() const { return page_of(data_->directory); }
 
-Result run(const std::string& config, const Settings& settings, const std::string& directory,
+Result run(const std::string& config, const Settings& settings, const std::string& given_directory,
            const KeepGoing& keep_going) {
+  const std::string directory = given_directory.empty() ? "" : fs::absolute(given_directory).string();
   return translated([&] {
     return interruptible(keep_going, [&](sim::WorkMeter& meter) {
       sim::Schema schema = run::run_schema();
@@ -361,6 +372,9 @@ Result run(const std::string& config, const Settings& settings, const std::strin
       sim::Config read_config = read(schema, config, settings);
       tables::refuse_other_results(directory, tables::run_name);
       const sim::MadeDirectory made = show::prepare_output(directory);
+      if (!directory.empty()) {
+        host::load_image_library();
+      }
       run::RunOptions options;
       options.directory = directory;
       options.what_helps = helps::Measuring::within_budget;
@@ -386,9 +400,12 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
             const KeepGoing& keep_going) {
   return translated([&] {
     return interruptible(keep_going, [&](sim::WorkMeter& meter) {
+      if (!choices.share.empty() && choices.directory.empty()) {
+        throw sim::UserError("a share is timed into a directory, with those of others; give its name");
+      }
       auto own = choices.directory.empty() ? std::make_unique<const OwnDirectory>() : nullptr;
       sweep::SweepOptions options;
-      options.directory = own ? own->name() : fs::path(choices.directory);
+      options.directory = own ? own->name() : fs::absolute(choices.directory);
       options.threads = choices.threads;
       options.quiet = true;
       options.meter = &meter;
@@ -396,7 +413,10 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
         options.share = sweep::share_named(choices.share);
       }
       sim::Config read_config = read(sweep::sweep_schema(), config, choices.settings);
-      const sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes);
+      sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes);
+      for (sweep::SweepFrame& frame : plan.frames) {
+        frame.config.meter = &meter;  // so that tracing can be stopped
+      }
       sweep::check_question(plan.question, plan.axes);
       const sweep::SweepReport report =
           sweep::run_sweep(plan, options, keys::read_memory(read_config, sweep::processes_beside()),
@@ -404,14 +424,21 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
       auto data = report.reader ? data_of(*report.reader, options.directory.string())
                                 : std::make_shared<Sweep::Data>();
       data->directory = options.directory.string();
+      if (!report.reader) {
+        data->summary = "other shares are not done: the last one merges them, or a sweep without a share\n";
+      }
       data->own = std::move(own);
       return Sweep(std::move(data));
     });
   });
 }
 
-std::variant<Result, Sweep, Study> open(const std::string& directory) {
+std::variant<Result, Sweep, Study> open(const std::string& given_directory) {
   return translated([&]() -> std::variant<Result, Sweep, Study> {
+    if (!fs::is_directory(given_directory)) {
+      throw sim::UserError(given_directory + ": there is no such directory");
+    }
+    const std::string directory = fs::absolute(given_directory).string();
     const report::ReportData report = report::read_report(directory);
     if (report.kind == "run") {
       auto data = std::make_shared<Result::Data>();

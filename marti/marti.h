@@ -50,7 +50,8 @@ class MARTI_PUBLIC Interrupted : public std::runtime_error {
   Interrupted();
 };
 
-/// Asked several times a second while something runs, by a thread of the library, until it says no.
+/// Asked several times a second by the thread that has called, while another one works, until it says no.
+/// Reading a scene and building its tree are not ended before they are done.
 using KeepGoing = std::function<bool()>;
 
 /// A figure that a machine does not have is std::monostate.
@@ -159,7 +160,9 @@ struct SweepChoices {
   std::string directory{};
   Settings settings{};
   unsigned threads = 0;  ///< machines timed at a time; 0: as many as the computer has
-  std::string share{};   ///< "3/8": only the third of eight parts of the machines; empty: all
+  /// "3/8": only the third of eight parts of the machines, into a directory; empty: all. Of the share that is
+  /// not the last to end, the Sweep has no points.
+  std::string share{};
 };
 
 /// Every machine of the configuration's [sweep] and of these axes, each "key=value,value,...", as after

@@ -51,6 +51,9 @@ PYBIND11_MODULE(_marti, module) {
   using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
   static const py::handle error = PyErr_NewException("marti.Error", PyExc_ValueError, nullptr);
+  for (const char* const part : {"file", "line", "key"}) {
+    py::reinterpret_borrow<py::object>(error).attr(part) = py::none();
+  }
   module.attr("Error") = error;
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
@@ -80,13 +83,20 @@ PYBIND11_MODULE(_marti, module) {
       .def("settings", &marti::Result::settings)
       .def("json", &marti::Result::json)
       .def("summary", &marti::Result::summary)
-      .def("image", [](const marti::Result& result) { return array_of(result.image()); })
+      .def("image",
+           [](const marti::Result& result) {
+             const marti::Image image = [&] {
+               const py::gil_scoped_release released;
+               return result.image();
+             }();
+             return array_of(image);
+           })
       .def("report", &marti::Result::report, WithoutGil())
       .def("save", &marti::Result::save, WithoutGil());
   py::class_<marti::Sweep>(module, "Sweep")
       .def("points", &marti::Sweep::points)
       .def("axes", &marti::Sweep::axes)
-      .def("best", &marti::Sweep::best)
+      .def("best", &marti::Sweep::best, WithoutGil())
       .def("summary", &marti::Sweep::summary)
       .def("tables", &marti::Sweep::tables)
       .def("directory", &marti::Sweep::directory)

@@ -376,7 +376,7 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
   format.choices = run::trace_formats();
   takes_value(trace->add_option("--format", arguments.options.format,
                                 "din: what nodes refer to, before their caches; others: what leaves their "
-                                "caches, with times, as the simulator of this name reads it"),
+                                "caches, in the order of time, as the simulator of this name reads it"),
               format);
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
       ->type_name("NODES")

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "processors/replay/driven_memory.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
 #include "studies/driven/request_reader.h"
 #include "studies/figures/counted_figures.h"
 #include "studies/figures/derived_figures.h"
@@ -15,6 +17,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/record_keys.h"
 #include "studies/run/run_result.h"
+#include "studies/run/trace/request_format.h"
 #include "studies/show/result_parts.h"
 #include "studies/tables/cell_number.h"
 #include "studies/tables/json_table.h"
@@ -46,6 +49,18 @@ bool is_of_memory(std::string_view name) {
     }
   }
   return name == "end";
+}
+
+// Bytes that can be told apart: of DRAM all that it has, and as many lines as a shared cache can name.
+std::uint64_t addresses_of(const processors::machine::MachineConfig& machine) {
+  std::uint64_t bytes = TraceDefaults().addresses;
+  if (machine.banks.cache) {
+    bytes = std::min(bytes, std::uint64_t{machine.reference_bytes()} << 32U);
+  }
+  if (const auto& dram = machine.banks.dram) {
+    bytes = std::min(bytes, dram->capacity());
+  }
+  return bytes;
 }
 
 // A result whose parts are shown as those of a run.
@@ -134,25 +149,45 @@ std::string drive(sim::Config& config, const std::filesystem::path& trace, const
   config.refuse_unused();
   machine.count = {};
   machine.energy = {};
+  if (machine.clusters > 1) {
+    throw sim::KeyError("machine.clusters", "a trace drives the memory of one cluster");
+  }
   TraceDefaults defaults;
   defaults.nodes = machine.nodes;
-  defaults.cycle = machine.banks.dram ? machine.banks.dram->period : machine.banks.clock.period();
-  defaults.bytes = machine.banks.dram ? machine.banks.dram->burst_bytes : defaults.bytes;
+  defaults.addresses = addresses_of(machine);
+  defaults.cycle = run::cycle_of(machine);
+  defaults.bytes = run::burst_of(machine);
   RequestReader reader(trace, defaults);
   Counted counted;
   processors::replay::DrivenOptions options;
   options.outstanding = choices.outstanding;
   options.timed = reader.timed();
   options.meter = meter;
+  // Banks and caches serve a line at a time, as nodes ask for them; DRAM takes bursts of what it is asked
+  // for.
+  const bool by_lines = !machine.banks.dram || machine.banks.cache;
+  const std::uint32_t line = machine.reference_bytes();
+  processors::walk::Request rest;
+  rest.bytes = 0;
   const DrivenResult driven =
       processors::replay::drive_memory(machine, options, [&](processors::walk::Request& request) {
-        if (!reader.next(request)) {
+        if (rest.bytes == 0 && !reader.next(rest)) {
           return false;
         }
+        request = rest;
+        if (by_lines && (!rest.write || rest.bytes > line)) {
+          const auto left = static_cast<std::uint32_t>(line - rest.address % line);
+          request.bytes = std::min(rest.bytes, left);
+        }
+        rest.address += request.bytes;
+        rest.bytes -= request.bytes;
         ++(request.write ? counted.writes : counted.reads);
         counted.bytes += request.bytes;
         return true;
       });
+  if (counted.reads + counted.writes == 0) {
+    throw sim::UserError(trace.string() + ": has no requests");
+  }
   const run::RunResult result = as_run(std::move(machine), driven);
   const std::string name = trace.filename().string();
   return choices.json ? tables::json_text(json_of(result, driven, counted, reader, name))

@@ -13,6 +13,7 @@
 #include "sim/input_files.h"
 #include "sim/parse_number.h"
 #include "sim/shown.h"
+#include "sim/units.h"
 
 namespace marti::studies::driven {
 
@@ -21,14 +22,14 @@ namespace {
 using processors::walk::Request;
 
 constexpr std::size_t longest_line = 4096;
-constexpr std::uint64_t most_bytes = 1U << 20U;  // of a request
-constexpr std::uint64_t most_address = std::uint64_t{1} << 48U;
-constexpr std::uint64_t latest = std::uint64_t{1} << 62U;  // ps
+constexpr std::uint64_t most_bytes = 1U << 20U;            // of a request
+constexpr std::uint64_t latest = std::uint64_t{1} << 60U;  // ps
 
 std::vector<std::string_view> parts_of(std::string_view line, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    const std::size_t end = std::min(
+        separator == ' ' ? line.find_first_of(" \t", begin) : line.find(separator, begin), line.size());
     if (separator != ' ' || end > begin) {
       parts.push_back(line.substr(begin, end - begin));
     }
@@ -66,25 +67,20 @@ RequestReader::RequestReader(const std::filesystem::path& file, const TraceDefau
     throw sim::UserError(file.string() + ": there is no trace that can be read");
   }
   sim::note_input(file);
-  if (!next_line()) {
-    throw sim::UserError(file.string() + ": is empty");
-  }
-  if (text_.starts_with("gem5")) {
+  if (stream_.peek() == 'g') {  // gem5's magic number; no line of the other forms begins so
     form_ = Form::gem5;
-    constexpr std::streamoff magic = 4;
-    stream_.clear();
-    stream_.seekg(magic);
-    line_ = 0;
-    std::uint64_t left = most_bytes;
-    for (std::uint64_t header = packet_number(left); header > 0; --header) {
-      if (stream_.get() == std::char_traits<char>::eof()) {
-        fail("the trace ends within its header");
-      }
-    }
+    read_gem5_header();
     return;
   }
-  const std::string_view first =
-      parts_of(text_, ' ').empty() ? std::string_view() : parts_of(text_, ' ').front();
+  do {
+    if (!next_line()) {
+      throw sim::UserError(file.string() + ": is empty");
+    }
+    if (line_ == 1 && text_.starts_with("\xef\xbb\xbf")) {
+      text_.erase(0, 3);
+    }
+  } while (parts_of(text_, ' ').empty());
+  const std::string_view first = parts_of(text_, ' ').front();
   if (first == "LD" || first == "ST") {
     form_ = Form::load_store;
   } else if (first.starts_with("0x") || first.starts_with("0X")) {
@@ -93,9 +89,7 @@ RequestReader::RequestReader(const std::filesystem::path& file, const TraceDefau
     read_header();
     return;
   }
-  stream_.clear();
-  stream_.seekg(0);
-  line_ = 0;
+  pending_ = true;
 }
 
 std::string_view RequestReader::form() const {
@@ -110,6 +104,10 @@ void RequestReader::fail(const std::string& reason) const {
 
 // Not std::getline(), which has no limit.
 bool RequestReader::next_line() {
+  if (pending_) {
+    pending_ = false;
+    return true;
+  }
   text_.clear();
   ++line_;
   for (int c = stream_.get(); c != std::char_traits<char>::eof(); c = stream_.get()) {
@@ -124,7 +122,38 @@ bool RequestReader::next_line() {
     }
     text_ += static_cast<char>(c);
   }
+  if (stream_.bad()) {
+    fail("cannot be read further");
+  }
   return !text_.empty();
+}
+
+// The magic number, and the header's time base.
+void RequestReader::read_gem5_header() {
+  std::string magic(4, '\0');
+  stream_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (magic != "gem5") {
+    fail("is no trace of requests");
+  }
+  std::uint64_t left = most_bytes;
+  left = packet_number(left);
+  while (left > 0) {
+    const std::uint64_t tag = packet_number(left);
+    const std::uint64_t value = packet_number(left);
+    if (tag % 8 == 2) {  // a text, of which this is the length
+      for (std::uint64_t k = 0; k < value; ++k, --left) {
+        if (left == 0 || stream_.get() == std::char_traits<char>::eof()) {
+          fail("the trace ends within its header");
+        }
+      }
+    } else if (tag / 8 == 3) {
+      ticks_a_second_ = value;
+    }
+  }
+  constexpr std::uint64_t most = sim::ticks_per_second;
+  if (ticks_a_second_ == 0 || most % ticks_a_second_ != 0) {
+    fail("its times are no whole numbers of ps");
+  }
 }
 
 void RequestReader::read_header() {
@@ -171,7 +200,7 @@ void RequestReader::read_csv(Request& request) const {
     fail("access is neither read nor write: \"" + sim::shown(text_) + "\"");
   }
   if (time > latest || bytes > most_bytes) {
-    fail("the time is beyond 2^62 ps, or the request has more than 1 MiB");
+    fail("the time is beyond 2^60 ps, or the request has more than 1 MiB");
   }
   request = {static_cast<sim::Ticks>(time),
              static_cast<std::uint32_t>(std::min<std::uint64_t>(node, 0xffffffffU)),
@@ -191,7 +220,7 @@ void RequestReader::read_words(Request& request) const {
     fail(fmt::format("is not like \"{}\": \"{}\"", has_time ? "0x40 READ 12" : "LD 0x40", sim::shown(text_)));
   }
   if (*cycle > latest / static_cast<std::uint64_t>(defaults_.cycle)) {
-    fail("the time is beyond 2^62 ps");
+    fail("the time is beyond 2^60 ps");
   }
   request = {static_cast<sim::Ticks>(*cycle) * defaults_.cycle, 0, *address, defaults_.bytes, *write};
 }
@@ -236,10 +265,11 @@ bool RequestReader::next_packet(Request& request) {
   if (fields[2] != read_request && fields[2] != write_request) {
     fail(fmt::format("command {} is neither gem5's ReadReq nor its WriteReq", fields[2]));
   }
-  if (fields[1] > latest || fields[4] > most_bytes) {
-    fail("the time is beyond 2^62 ps, or the request has more than 1 MiB");
+  const std::uint64_t tick = sim::ticks_per_second / ticks_a_second_;
+  if (fields[1] > latest / tick || fields[4] > most_bytes) {
+    fail("the time is beyond 2^60 ps, or the request has more than 1 MiB");
   }
-  request = {static_cast<sim::Ticks>(fields[1]), 0, fields[3], static_cast<std::uint32_t>(fields[4]),
+  request = {static_cast<sim::Ticks>(fields[1] * tick), 0, fields[3], static_cast<std::uint32_t>(fields[4]),
              fields[2] == write_request};
   return true;
 }
@@ -248,8 +278,9 @@ void RequestReader::check(Request& request) {
   if (request.bytes == 0) {
     fail("a request has 0 bytes");
   }
-  if (request.address >= most_address) {
-    fail("an address is beyond 2^48");
+  if (request.address >= defaults_.addresses || request.bytes > defaults_.addresses - request.address) {
+    fail(fmt::format("address {} is beyond the {} of the memory", request.address,
+                     sim::print_size(static_cast<std::int64_t>(defaults_.addresses))));
   }
   if (request.node >= defaults_.nodes) {
     fail(fmt::format("node {} is beyond machine.nodes = {}", request.node, defaults_.nodes));
@@ -270,7 +301,7 @@ bool RequestReader::next(Request& request) {
       if (!next_line()) {
         return false;
       }
-    } while (text_.empty());
+    } while (parts_of(text_, ' ').empty());
     form_ == Form::csv ? read_csv(request) : read_words(request);
   }
   check(request);

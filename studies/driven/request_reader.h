@@ -13,14 +13,16 @@ namespace marti::studies::driven {
 
 /// What the forms leave out.
 struct TraceDefaults {
-  std::uint32_t bytes = 64;  ///< of a request
-  sim::Ticks cycle = 1000;   ///< of DRAMsim3's times
-  std::uint32_t nodes = 1;   ///< a request of a node beyond is refused
+  std::uint32_t bytes = 64;                           ///< of a request
+  sim::Ticks cycle = 1000;                            ///< of DRAMsim3's times
+  std::uint32_t nodes = 1;                            ///< a request of a node beyond is refused
+  std::uint64_t addresses = std::uint64_t{1} << 48U;  ///< of the memory; one beyond is refused
 };
 
 /// CSV as `marti trace --format csv` writes it (columns time_ps, access, address; node and bytes may be
 /// missing, others are ignored), DRAMsim3's lines "0x40 READ 12", Ramulator 2's "LD 0x40" and "ST 64", or
-/// gem5's packet traces, uncompressed. The first bytes tell which.
+/// gem5's packet traces, uncompressed. The first bytes tell which. Words may be
+/// parted by any blanks; a byte order mark and empty lines are skipped.
 /// Requests of forms without nodes are of node 0.
 class RequestReader {
  public:
@@ -41,6 +43,7 @@ class RequestReader {
   [[noreturn]] void fail(const std::string& reason) const;
   [[nodiscard]] bool next_line();
   void read_header();
+  void read_gem5_header();
   [[nodiscard]] bool next_packet(processors::walk::Request& request);
   void read_csv(processors::walk::Request& request) const;
   void read_words(processors::walk::Request& request) const;
@@ -53,6 +56,8 @@ class RequestReader {
   Form form_ = Form::csv;
   std::uint64_t line_ = 0;  // of gem5's traces, packets
   std::string text_;
+  bool pending_ = false;              // text_ is a line that was not taken yet
+  std::uint64_t ticks_a_second_ = 0;  // of gem5's times
   // Of CSV, the columns of these; -1: none.
   int time_ = -1;
   int node_ = -1;

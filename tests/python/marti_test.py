@@ -139,6 +139,10 @@ class Runs(unittest.TestCase):
         page = self.result.report()
         self.assertTrue(page.html.startswith("<!DOCTYPE html>"))
         self.assertIn("<iframe srcdoc=", page._repr_html_())
+        with tempfile.TemporaryDirectory() as directory:
+            page.save(pathlib.Path(directory, "page.html"))
+            self.assertEqual(pathlib.Path(directory, "page.html").read_text(), page.html)
+            self.assertEqual(os.listdir(directory), ["page.html"])
 
     def test_errors_have_file_line_and_key(self):
         with tempfile.TemporaryDirectory() as directory:
@@ -228,6 +232,33 @@ class Sweeps(unittest.TestCase):
             self.same(sweep)
             self.assertFalse([name for name in os.listdir(place) if "part" in name])
 
+    def test_what_a_broken_executor_leaves_is_timed_here(self):
+        with tempfile.TemporaryDirectory() as directory:
+            with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+                with self.assertRaises(concurrent.futures.BrokenExecutor):
+                    pool.submit(os._exit, 9).result()
+                self.same(marti.sweep(self.config, AXES, SMALL, directory=directory, executor=pool, shares=3))
+
+    def test_a_share_needs_a_directory_and_says_what_is_missing(self):
+        with self.assertRaisesRegex(marti.Error, "directory"):
+            marti.sweep(self.config, AXES, SMALL, share="1/2")
+        with tempfile.TemporaryDirectory() as directory:
+            part = marti.sweep(self.config, AXES, SMALL, directory=directory, share="1/2")
+            self.assertFalse(part.complete)
+            self.assertIn("other shares", part.summary)
+            self.same(marti.sweep(self.config, AXES, SMALL, directory=directory, share="2/2"))
+
+    def test_ctrl_c_ends_a_sweep_and_keeps_what_is_done(self):
+        with tempfile.TemporaryDirectory() as directory:
+            timer = threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT))
+            timer.start()
+            began = time.monotonic()
+            with self.assertRaises(KeyboardInterrupt):
+                marti.sweep(self.config, {"machine.nodes": list(range(1, 100))}, {"image.width": 512, "image.height": 512},
+                            directory=directory)
+            self.assertLess(time.monotonic() - began, 20)
+            self.same(marti.sweep(self.config, AXES, SMALL, directory=directory))
+
     def test_what_is_wrong_for_all_workers_is_told_once(self):
         with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
             with self.assertRaisesRegex(marti.Error, "machine.nodes"):
@@ -246,6 +277,12 @@ class Sweeps(unittest.TestCase):
                                       shares=3))
 
     def test_names_with_commas_and_lists(self):
+        self.assertEqual(marti._axis_texts({"cache.size": "8KiB", "machine.nodes": numpy.int64(4)}),
+                         ["cache.size=8KiB", "machine.nodes=4"])
+        self.assertEqual(marti._text(numpy.bool_(False)), "false")
+        for wrong in (None, b"8", {"a": 1}):
+            with self.assertRaises(TypeError):
+                marti._text(wrong)
         self.assertEqual(marti._quoted("a,b.obj"), '"a,b.obj"')
         self.assertEqual(marti._text(["leaving", 1, True]), '["leaving", 1, true]')
 

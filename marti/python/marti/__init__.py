@@ -15,7 +15,7 @@
     marti.open("out")                  # what a command has written: a Result, a Sweep or a Study
 
 Names, units and meanings of figures are those of `marti figures`, keys those of `marti config`. The work is done in
-this process, without the interpreter's lock, and Ctrl-C ends it.
+this process, without the interpreter's lock, and Ctrl-C ends it, but for reading a scene and building its tree.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ ATTEMPTS = 3
 
 
 def run(
-    config: Path = None, settings: Mapping[str, Any] | None = None, /, *, directory: Path = None, **more: Any
+    config: Path = None, settings: Mapping[str, Any] | None = None, *, directory: Path = None, **more: Any
 ) -> Result:
     """One frame on one machine.
 
     config: a TOML file; None: all keys have their defaults. Settings override the file: {"machine.nodes": 64}, or as
-    arguments with two underscores for the dot, machine__nodes=64. directory: where all is written that `marti run -o`
+    arguments with two underscores for the dot, machine__nodes=64, which count if both are given. directory: where all is written that `marti run -o`
     writes, with what the run records. Error if a setting or the file is wrong."""
     return Result(_marti.run(_file(config), _assignments(settings, more), _file(directory)))
 
@@ -76,26 +76,28 @@ def sweep(
     are kept, so that the same call goes on with them; None: they last as long as the Sweep. threads: machines timed at
     a time; 0: as many as the computer has. share: "3/8" times only the third of eight parts of the machines.
 
-    executor: any of concurrent.futures, Dask or mpi4py.futures, whose workers time `shares` parts of the machines. A
-    part that a worker does not bring is asked for again. The workers must see the configuration and the directory."""
+    executor: an executor of concurrent.futures or mpi4py.futures, or Dask's Client.get_executor(), whose workers time
+    `shares` parts of the machines. A part that a worker does not bring is asked for again; what an executor that is
+    broken leaves is timed here. The workers must see the configuration and the directory."""
     assignments = _assignments(settings, more)
-    texts = [f"{key}={','.join(map(_quoted, values))}" for key, values in axes.items()] if isinstance(
-        axes, Mapping
-    ) else list(axes)
+    texts = _axis_texts(axes)
     if executor is None:
         return Sweep(_marti.sweep(_file(config), texts, assignments, _file(directory), threads, share))
     if share:
         raise ValueError("share: the executor's workers have the shares; leave it out")
-    place = os.path.abspath(tempfile.mkdtemp(prefix="marti-") if directory is None else _file(directory))
-    source = os.path.abspath(_file(config)) if config is not None else ""
+    if int(shares) < 1:
+        raise ValueError(f"shares: must be 1 or more, not {shares}")
+    own = not _file(directory)
+    place = os.path.abspath(tempfile.mkdtemp(prefix="marti-") if own else _file(directory))
+    source = os.path.abspath(_file(config)) if _file(config) else ""
     try:
-        _time_shares(executor, shares, (source, texts, assignments, place, threads))
+        _time_shares(executor, int(shares), (source, texts, assignments, place, threads))
         whole = Sweep(_marti.sweep(source, texts, assignments, place, threads, ""))
     except BaseException:
-        if directory is None:
+        if own:
             shutil.rmtree(place, ignore_errors=True)
         raise
-    if directory is None:
+    if own:
         weakref.finalize(whole, shutil.rmtree, place, ignore_errors=True)
     return whole
 
@@ -113,7 +115,16 @@ class Page:
         self.html = text
 
     def save(self, file: Path) -> None:
-        pathlib.Path(file).write_text(self.html, encoding="utf-8")
+        """Writes the page under a temporary name and renames it, so that no half page is left behind."""
+        handle, name = tempfile.mkstemp(dir=os.path.dirname(os.path.abspath(_file(file))), suffix=".html")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as page:
+                page.write(self.html)
+            os.chmod(name, 0o666 & ~_umask())
+            os.replace(name, _file(file))
+        except BaseException:
+            os.unlink(name)
+            raise
 
     def _repr_html_(self) -> str:
         return (
@@ -230,14 +241,38 @@ def _file(name: Path) -> str:
     return "" if name is None else os.fspath(name)
 
 
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _axis_texts(axes: Mapping[str, Any] | Iterable[str]) -> list[str]:
+    """Each as after --axis."""
+    if isinstance(axes, str):
+        return [axes]
+    if not isinstance(axes, Mapping):
+        return list(axes)
+    texts = []
+    for key, values in axes.items():
+        single = isinstance(values, str) or not isinstance(values, Iterable)
+        texts.append(f"{key}={','.join(map(_quoted, [values] if single else values))}")
+    return texts
+
+
 def _text(value: Any) -> str:
     """As a value stands after --set key=."""
-    if isinstance(value, str):
-        return value
+    if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
+        value = value.item()  # of numpy
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
     if isinstance(value, bool):
         return "true" if value else "false"
+    if value is None or isinstance(value, (bytes, Mapping)):
+        raise TypeError(f"no setting can be {value!r}: give a text, a number, a truth value or a list of these")
     if isinstance(value, Iterable):
-        return "[" + ", ".join(_json.dumps(each) if isinstance(each, str) else _text(each) for each in value) + "]"
+        parts = (_json.dumps(each, ensure_ascii=False) if isinstance(each, str) else _text(each) for each in value)
+        return "[" + ", ".join(parts) + "]"
     return str(value)
 
 
@@ -267,24 +302,35 @@ def _time_share(work: tuple[str, list[str], list[str], str, int], share: str) ->
     _marti.sweep(config, axes, assignments, directory, threads, share)
 
 
-def _time_shares(executor: concurrent.futures.Executor, shares: int, work: tuple[str, list[str], list[str], str, int]) -> None:
+def _time_shares(
+    executor: concurrent.futures.Executor, shares: int, work: tuple[str, list[str], list[str], str, int]
+) -> None:
     """Has the executor time all shares. What is wrong with the input is an Error at once; a share that is lost with its
     worker is asked for again."""
     attempts = dict.fromkeys((f"{number}/{shares}" for number in range(1, shares + 1)), 1)
-    waiting = {executor.submit(_time_share, work, share): share for share in attempts}
-    while waiting:
-        done, _ = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
-        for future in done:
-            share = waiting.pop(future)
-            failure = future.exception()
-            if failure is None:
-                continue
-            if isinstance(failure, Error) or attempts[share] == ATTEMPTS:
-                for other in waiting:
-                    other.cancel()
-                raise failure
-            attempts[share] += 1
+    waiting: dict[concurrent.futures.Future[None], str] = {}
+    try:
+        for share in attempts:
             waiting[executor.submit(_time_share, work, share)] = share
-        if sys.stderr.isatty():
-            end = "" if waiting else "\n"
-            print(f"\r{shares - len(waiting)} of {shares} shares", end=end, file=sys.stderr, flush=True)
+        while waiting:
+            done, _ = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
+            for future in done:
+                share = waiting.pop(future)
+                failure = future.exception()
+                if failure is None:
+                    continue
+                # What names a key or a file is wrong for all; another process may still hold the part of one.
+                is_input = isinstance(failure, Error) and (failure.key or failure.file)
+                if is_input or attempts[share] == ATTEMPTS:
+                    raise failure
+                attempts[share] += 1
+                waiting[executor.submit(_time_share, work, share)] = share
+            if sys.stderr.isatty():
+                end = "" if waiting else "\n"
+                print(f"\r{shares - len(waiting)} of {shares} shares", end=end, file=sys.stderr, flush=True)
+    except concurrent.futures.BrokenExecutor:
+        pass  # it takes no work any more; the caller does the rest
+    finally:
+        for future in waiting:
+            future.cancel()
+        concurrent.futures.wait(waiting)  # those that run write into the directory

@@ -19,12 +19,6 @@ using memory::Layout;
 using processors::machine::MachineConfig;
 using processors::walk::Request;
 
-// Other simulators take what one burst moves at a time; those without DRAM, 64 bytes.
-std::uint32_t burst_of(const MachineConfig& machine) {
-  constexpr std::uint32_t usual = 64;
-  return machine.banks.dram ? machine.banks.dram->burst_bytes : usual;
-}
-
 // Calls use(address) for each burst that the request touches.
 template <class Use>
 void for_each_burst(const Request& request, std::uint32_t burst, const Use& use) {
@@ -82,8 +76,7 @@ AppendRequest append_read_write(const MachineConfig& machine, const Layout& /*la
 }
 
 AppendRequest append_dramsim3(const MachineConfig& machine, const Layout& /*layout*/) {
-  const sim::Ticks period = machine.banks.dram ? machine.banks.dram->period : machine.banks.clock.period();
-  return [burst = burst_of(machine), period](const Request& request, std::string& file) {
+  return [burst = burst_of(machine), period = cycle_of(machine)](const Request& request, std::string& file) {
     for_each_burst(request, burst, [&](memory::Address address) {
       fmt::format_to(std::back_inserter(file), "0x{:X} {} {}\n", address, request.write ? "WRITE" : "READ",
                      request.time / period);
@@ -169,6 +162,14 @@ constexpr std::array formats = {
     RequestFormat{"champsim", "champsim", true, nothing, append_champsim}};
 
 }  // namespace
+
+std::uint32_t burst_of(const MachineConfig& machine) {
+  return machine.banks.dram ? machine.banks.dram->burst_bytes : machine.reference_bytes();
+}
+
+sim::Ticks cycle_of(const MachineConfig& machine) {
+  return machine.banks.dram ? machine.banks.dram->period : machine.banks.clock.period();
+}
 
 std::span<const RequestFormat> request_formats() { return formats; }
 

@@ -176,7 +176,7 @@ class Loop {
           if (result) {
             processors::replay::work_out_energy(*ready.frame->log, machine.config, *result);
           } else {
-            result = replay(ready, machine.config);
+            result = replay(ready, machine.config, plan_.frames[machine.frame].config.meter);
           }
           return sweep_row(machine.config, *result);
         });
@@ -192,9 +192,11 @@ class Loop {
   }
 
   processors::replay::MachineResult replay(const ReadyBatch& ready,
-                                           const processors::machine::MachineConfig& machine) {
+                                           const processors::machine::MachineConfig& machine,
+                                           sim::WorkMeter* meter) {
     const processors::program::WorkLog& log = *ready.frame->log;
     processors::replay::ReplayOptions options;
+    options.meter = meter;
     if (!ready.stripped.empty()) {
       const auto ways = std::ranges::find(ready.batch->ways, StrippedLog::ways_of(machine));
       options.stripped = ready.stripped[static_cast<std::size_t>(ways - ready.batch->ways.begin())].get();
