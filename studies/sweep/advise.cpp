@@ -15,15 +15,13 @@
 #include "studies/helps/what_helps.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
+#include "studies/sweep/work/advice_work.h"
 
 namespace marti::studies::sweep {
 
 namespace {
 
 constexpr std::size_t most_advised = 12;
-constexpr std::size_t least_advised = 2;
-constexpr helps::Work least_work = 500'000'000;  // for one machine; half a second
-constexpr helps::Work part_of_sweep = 10;
 constexpr helps::Work replays_of_one = 16;  // that a machine's advice should have, at least
 
 // Of the replays of a sweep, whose machines share stripped logs. Found by timing 1,000 machines of
@@ -128,11 +126,11 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
     of_sweep += sweep_reference * touched + sweep_event * happened;
     alone.push_back(helps::whole_replay_work(touched, happened));
   }
-  const helps::Work budget = of_sweep / part_of_sweep;
-  const helps::Work enough = std::max(least_work, replays_of_one * alone[machines.front()]);
+  const helps::Work budget = of_sweep / advice_part_of_sweep;
+  const helps::Work enough = std::max(least_advice_work, replays_of_one * alone[machines.front()]);
   machines.resize(
       std::min(machines.size(), std::clamp<std::size_t>(budget / enough, least_advised, most_advised)));
-  const helps::Work of_each = std::max(least_work, budget / machines.size());
+  const helps::Work of_each = std::max(least_advice_work, budget / machines.size());
   const std::vector<bool> advised = store.advised();
   for (const std::size_t index : machines) {
     if (advised[index]) {

@@ -117,8 +117,8 @@ inline void tell_of_building(const processors::program::WorkLog& log,
   } else {
     nodes = std::make_unique<DynamicNodes<ToldCaches>>(input, engine, host, std::move(caches));
   }
-  const Interconnects interconnects =
-      connect_memory(machine, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes);
+  const Interconnects interconnects = connect_memory(
+      machine, engine, static_cast<std::uint8_t>(EventClass::memory), *nodes, nullptr, nullptr);
   for (const EventClass c : {EventClass::step, EventClass::dispatch, EventClass::reply, EventClass::read,
                              EventClass::write, EventClass::memory}) {
     engine.attach(static_cast<std::uint8_t>(c), *nodes);

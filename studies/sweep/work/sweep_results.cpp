@@ -5,6 +5,7 @@
 
 #include "sim/cpu_time.h"
 #include "sim/error.h"
+#include "studies/sweep/work/advice_work.h"
 
 namespace marti::studies::sweep {
 
@@ -40,9 +41,12 @@ double SweepResults::taken() {
 }
 
 std::int64_t SweepResults::nanoseconds_left() const {
-  return timed_ < std::clamp<std::size_t>(to_time_ / 4, 1, enough_to_tell)
-             ? 0
-             : static_cast<std::int64_t>(1e9 * (frames_.seconds_left() + machines_.seconds_left()));
+  if (timed_ < std::clamp<std::size_t>(to_time_ / 4, 1, enough_to_tell)) {
+    return 0;
+  }
+  const double of_machines = machines_.seconds_left();
+  return static_cast<std::int64_t>(
+      1e9 * (frames_.seconds_left() + of_machines + advice_seconds(machines_.seconds + of_machines)));
 }
 
 void SweepResults::end_if_stopped() const {
