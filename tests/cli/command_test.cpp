@@ -161,7 +161,8 @@ TEST(Command, OptionsSayWhatTheyTake) {
            {"explore x.toml --port many", "--port=many: must be an integer, not the text \"many\""},
            {"explore x.toml --for long", "--for=long: must be a number, not the text \"long\""},
            {"trace x.toml -o y --format dni",
-            "--format=dni: must be din, not \"dni\" (did you mean \"din\"?)"},
+            "--format=dni: must be din, csv, ramulator-loadstore, ramulator-readwrite, dramsim3, gem5 or "
+            "champsim, not \"dni\" (did you mean \"din\"?)"},
        }) {
     expect_refused(arguments, words);
   }

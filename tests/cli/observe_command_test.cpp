@@ -382,7 +382,8 @@ TEST(MemoryCommand, SaysWhatIsWrongWithATrace) {
            {"time_ps,access,address,bytes\n1,read,0,0\n", "has 0 bytes"},
            {std::string(5000, 'x'), "more than 4,096 bytes"},
            {"gem5\x02\x08", "ends within"},
-           {std::string("gem5\x01\x08\x02\x10\x63", 9), "neither gem5's ReadReq"},
+           // A header of 10^12 ticks a second, then a packet of command 99.
+           {"gem5\x07\x18\x80\xa0\x94\xa5\x8d\x1d\x02\x10\x63", "neither gem5's ReadReq"},
        }) {
     std::ofstream(file, std::ios::binary) << content;
     expect_refused("memory " + shipped("marti.toml") + " " + quoted(file), complaint);

@@ -257,7 +257,8 @@ class Sweeps(unittest.TestCase):
                 marti.sweep(self.config, {"machine.nodes": list(range(1, 100))}, {"image.width": 512, "image.height": 512},
                             directory=directory)
             self.assertLess(time.monotonic() - began, 20)
-            self.same(marti.sweep(self.config, AXES, SMALL, directory=directory))
+            points = marti.sweep(self.config, AXES, SMALL, directory=directory).points
+            self.assertEqual(list(points["end"]), list(self.sweep.points["end"]))
 
     def test_what_is_wrong_for_all_workers_is_told_once(self):
         with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
