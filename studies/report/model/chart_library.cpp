@@ -27,8 +27,8 @@ ReportChart chart_with(std::string_view specification, const std::string& name, 
   return chart;
 }
 
-// Lets the reader choose among the values that a column of the rows has; at first it is that of the first row.
-// The specification knows what is chosen as `choice`.
+// Lets the reader choose among the values that a column of the rows has; at first it is that of the first
+// row. The specification knows what is chosen as `choice`.
 void add_choice(Json& spec, const std::string& column, const Json& rows) {
   Json options = Json::array();
   for (const Json& row : rows) {
