@@ -13,10 +13,11 @@ inline constexpr std::size_t least_advised = 2;  ///< machines, if there are so 
 inline constexpr std::uint64_t least_advice_work = 500'000'000;
 inline constexpr std::uint64_t advice_part_of_sweep = 10;
 
-/// Seconds of processor time that advice takes, about, where all machines take `machines` seconds.
+/// Seconds of processor time that advice takes, about, where all machines take `machines` seconds: of few and
+/// quick machines it does not need what it may have.
 [[nodiscard]] inline double advice_seconds(double machines) {
-  return std::max(1e-9 * static_cast<double>(least_advised * least_advice_work),
-                  machines / static_cast<double>(advice_part_of_sweep));
+  const double least = 1e-9 * static_cast<double>(least_advised * least_advice_work);
+  return std::max(std::min(least, machines), machines / static_cast<double>(advice_part_of_sweep));
 }
 
 }  // namespace marti::studies::sweep
