@@ -121,9 +121,10 @@ TEST_F(ReportCommand, ReportsARun) {
         << heat;
   }
   EXPECT_NE(page.find("Heat map: misses"), std::string::npos);
-  for (const char* name : {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses",
-                           "run_level_hit_ratio", "run_waits", "run_tree", "run_level_memory", "run_memory",
-                           "run_path", "run_energy", "run_power", "run_intervals", "run_bandwidth", "working_set"}) {
+  for (const char* name :
+       {"run_cycles", "run_loss", "run_nodes", "run_references", "run_level_accesses", "run_level_hit_ratio",
+        "run_waits", "run_tree", "run_level_memory", "run_memory", "run_path", "run_energy", "run_power",
+        "run_intervals", "run_bandwidth", "working_set"}) {
     EXPECT_TRUE(has_chart(data, name)) << name;
     EXPECT_NE(page.find("id=\"chart-" + std::string(name) + "\""), std::string::npos) << name;
   }

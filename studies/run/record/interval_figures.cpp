@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 #include <span>
 #include <string>
 #include <utility>
@@ -152,10 +151,10 @@ tables::Table IntervalFigures::table(const figures::Counts& whole) const {
     }
   }
   for (const FigureEntry& entry : figures::derived_figures()) {
-    const auto value_of = [&](std::size_t row) { return figures::figure_of({&rows[row]}, entry.name); };
-    const auto has_value = [&](std::size_t row) { return value_of(row).has_value(); };
+    const auto value_in = [&](const auto& counts) { return figures::figure_of({&counts}, entry.name); };
+    const auto value_of = [&](std::size_t row) { return value_in(rows[row]); };
     if (is_of_intervals(entry) &&
-        std::ranges::any_of(std::views::iota(std::size_t{0}, rows.size()), has_value)) {
+        std::ranges::any_of(rows, [&](const auto& counts) { return value_in(counts).has_value(); })) {
       add(tables::real_column(entry.name, entry.unit, entry.description), value_of);
     }
   }
