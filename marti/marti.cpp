@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "sim/error.h"
+#include "sim/joined.h"
 #include "sim/made_directory.h"
 #include "sim/mapped.h"
 #include "sim/nearest.h"
@@ -93,8 +94,7 @@ sim::Config read(const sim::Schema& schema, const std::string& config, const Set
   if (config == "-") {
     throw sim::UserError("-: standard input is for the program; give the name of a file");
   }
-  return config.empty() ? sim::Config::from_text(schema, "", "defaults", settings)
-                        : keys::read_config(schema, config, settings);
+  return keys::read_config_or_defaults(schema, config, settings);
 }
 
 /// A directory of its own for a result that is kept nowhere else.
@@ -147,22 +147,12 @@ Table table_of(const tables::Table& table) {
 }
 
 std::string page_of(const report::ReportData& data) {
-  if (!report::have_vega_scripts()) {
-    throw sim::UserError(report::no_vega_scripts);
-  }
+  report::require_vega_scripts();
   return report::report_page(data, report::vega_scripts());
 }
 
 std::string page_of(const fs::path& directory) {
   return translated([&] { return page_of(report::read_report(directory)); });
-}
-
-std::string lines(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) {
-    text += sentence + "\n";
-  }
-  return text;
 }
 
 /// A figure of the catalogue as it stands in results: "frame." before those of the frame.
@@ -300,8 +290,7 @@ void Result::save(const std::string& directory) const {
     if (directory.empty()) {
       throw sim::UserError("the name of a directory must not be empty");
     }
-    tables::refuse_other_results(directory, tables::run_name);
-    const sim::MadeDirectory made = show::prepare_output(directory);
+    const sim::MadeDirectory made = show::prepare_run(directory);
     show::write_output(*data_->live, directory);
   });
 }
@@ -341,10 +330,7 @@ bool Sweep::complete() const { return data_->complete; }
 
 Table Sweep::best(const std::string& figure, std::optional<double> budget) const {
   return translated([&] {
-    const figures::Better better = figures::figure_named(figure).better;
-    if (better != figures::Better::lower && better != figures::Better::higher) {
-      throw sim::UserError("of " + figure + " neither a lower nor a higher value is better");
-    }
+    figures::require_direction(figure);
     const sweep::SweepReader reader(fs::path(data_->directory) / tables::database_name);
     return table_of(sweep::best_points(reader, figure, budget).front);
   });
@@ -370,11 +356,7 @@ Result run(const std::string& config, const Settings& settings, const std::strin
       sim::Schema schema = run::run_schema();
       keys::declare_price_keys(schema);
       sim::Config read_config = read(schema, config, settings);
-      tables::refuse_other_results(directory, tables::run_name);
-      const sim::MadeDirectory made = show::prepare_output(directory);
-      if (!directory.empty()) {
-        host::load_image_library();
-      }
+      const sim::MadeDirectory made = show::prepare_run(directory);
       run::RunOptions options;
       options.directory = directory;
       options.what_helps = helps::Measuring::within_budget;
@@ -408,14 +390,13 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
       options.directory = own ? own->name() : fs::absolute(choices.directory);
       options.threads = choices.threads;
       options.quiet = true;
-      options.meter = &meter;
       if (!choices.share.empty()) {
         options.share = sweep::share_named(choices.share);
       }
       sim::Config read_config = read(sweep::sweep_schema(), config, choices.settings);
       sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes);
       for (sweep::SweepFrame& frame : plan.frames) {
-        frame.config.meter = &meter;  // so that tracing can be stopped
+        frame.config.meter = &meter;
       }
       sweep::check_question(plan.question, plan.axes);
       const sweep::SweepReport report =
@@ -445,7 +426,7 @@ std::variant<Result, Sweep, Study> open(const std::string& given_directory) {
       data->directory = directory;
       const tables::RunJson run = tables::read_run_json(fs::path(directory) / tables::run_name);
       data->json = tables::json_text(run.json());
-      data->summary = lines(report.answer);
+      data->summary = sim::joined(report.answer, "\n") + "\n";
       data->read(run);
       return Result(std::move(data));
     }

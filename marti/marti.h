@@ -54,7 +54,7 @@ class MARTI_PUBLIC Interrupted : public std::runtime_error {
 /// Reading a scene and building its tree are not ended before they are done.
 using KeepGoing = std::function<bool()>;
 
-/// A figure that a machine does not have is std::monostate.
+/// A cell of a table, or a figure; std::monostate where a machine lacks the figure.
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
 
 struct Column {

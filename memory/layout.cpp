@@ -5,16 +5,13 @@
 #include <string_view>
 
 #include "sim/key_error.h"
+#include "sim/round_up.h"
 
 namespace marti::memory {
 
 namespace {
 
 constexpr Address address_limit = Address{1} << 48U;
-
-std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
 
 // The configuration key of the size of such a record.
 std::string key_of(std::string_view name) {
@@ -44,7 +41,7 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
     section.base = at;
     section.count = count;
     section.bytes = record;
-    section.stride = static_cast<std::uint32_t>(round_up(record, alignment));
+    section.stride = static_cast<std::uint32_t>(sim::round_up(record, alignment));
     if (count > (address_limit - at) / section.stride) {
       throw sim::KeyError(key_of(name), "the database does not fit in 2^48 bytes");
     }
@@ -53,7 +50,7 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
   for (std::size_t k = 0; k < record_kinds; ++k) {
     const auto kind = static_cast<RecordKind>(k);
     const bool packed = kind == RecordKind::list || kind == RecordKind::texel || kind == RecordKind::pixel;
-    at = round_up(at, config.section_alignment);
+    at = sim::round_up(at, config.section_alignment);
     const std::uint64_t count = kind == RecordKind::primitive ? counts[k] - quadrics : counts[k];
     place(sections_[k], count, bytes[k], packed ? 1U : config.record_alignment, record_kind_names[k]);
     if (kind == RecordKind::primitive) {
@@ -65,7 +62,7 @@ Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint
 }
 
 void Layout::add_room(std::uint64_t bytes, std::uint64_t alignment) {
-  room_ = round_up(end_, alignment);
+  room_ = sim::round_up(end_, alignment);
   end_ = room_ + bytes;
 }
 

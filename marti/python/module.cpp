@@ -28,7 +28,7 @@ py::array_t<float> array_of(const marti::Image& image) {
   return array;
 }
 
-/// A figure that the machine does not have is None.
+/// A value as Python has it; None where a machine lacks the figure.
 py::object object_of(const marti::Value& value) {
   return std::holds_alternative<std::monostate>(value) ? py::object(py::none()) : py::cast(value);
 }

@@ -28,9 +28,10 @@ struct CacheUnits {
 
 /// Energies in aJ (1e-18 J, a millionth of a pJ) at the machine's voltage, areas in um2, leakage in pW a um2.
 struct EnergyUnits {
-  machine::OperationCycles operations;       ///< aJ where the cost model has cycles
-  machine::OperationCycles unit_operations;  ///< aJ likewise, of the tests that a ray-tracing unit makes
-  CacheUnits unit_rays;                      ///< of what holds its rays
+  machine::OperationCycles operations;  ///< aJ where the cost model has cycles
+  machine::OperationCycles
+      unit_operations;   ///< aJ of the tests of a ray-tracing unit, where the cost model has cycles
+  CacheUnits unit_rays;  ///< of what holds its rays
   std::array<CacheUnits, machine::split_caches> l1;
   CacheUnits l2;
   std::int64_t interconnect_byte = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "processors/node/memory_system.h"
+#include "processors/replay/replay_parts.h"
 #include "sim/engine.h"
 #include "sim/key_error.h"
 
@@ -40,12 +41,7 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
     engine_.run(std::numeric_limits<std::uint64_t>::max());
     sim::ensure(!has_request_ && in_flight_ == 0, "a memory has not served all requests");
     result_.machine.end = end_;
-    result_.machine.clusters.push_back({memory_->statistics(), memory_->bank_statistics()});
-    result_.machine.clusters.back().dram = memory_->dram_statistics(end_);
-    if (const memory::SharedCacheStatistics* const cache = memory_->cache_statistics()) {
-      result_.machine.l2.caches.push_back(cache->lookups);
-      result_.machine.l2.waits.push_back(cache->waits);
-    }
+    add_cluster(*memory_, end_, result_.machine);
     result_.machine.events = engine_.events();
     return std::move(result_);
   }

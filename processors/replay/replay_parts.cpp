@@ -90,6 +90,19 @@ Interconnects connect_memory(const machine::MachineConfig& config, sim::Engine& 
   return interconnects;
 }
 
+void add_cluster(const memory::Interconnect& memory, sim::Ticks end, MachineResult& result) {
+  ClusterResult& cluster =
+      result.clusters.emplace_back(ClusterResult{memory.statistics(), memory.bank_statistics()});
+  cluster.dram = memory.dram_statistics(end);
+  if (const memory::DistributedStatistics* const accesses = memory.distribution()) {
+    cluster.distributed = {*accesses, *memory.network_statistics()};
+  }
+  if (const memory::SharedCacheStatistics* const cache = memory.cache_statistics()) {
+    result.l2.caches.push_back(cache->lookups);
+    result.l2.waits.push_back(cache->waits);
+  }
+}
+
 MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,
                             const node::NodeArray& nodes, const Interconnects& interconnects,
                             const memory::Layout& layout, sim::Ticks end) {
@@ -97,15 +110,7 @@ MachineResult common_result(const machine::MachineConfig& config, const sim::Eng
   result.end = end;
   result.nodes = nodes.statistics();
   for (const auto& interconnect : interconnects) {
-    result.clusters.push_back({interconnect->statistics(), interconnect->bank_statistics()});
-    result.clusters.back().dram = interconnect->dram_statistics(result.end);
-    if (const memory::DistributedStatistics* const accesses = interconnect->distribution()) {
-      result.clusters.back().distributed = {*accesses, *interconnect->network_statistics()};
-    }
-    if (const memory::SharedCacheStatistics* const cache = interconnect->cache_statistics()) {
-      result.l2.caches.push_back(cache->lookups);
-      result.l2.waits.push_back(cache->waits);
-    }
+    add_cluster(*interconnect, end, result);
   }
   if (config.l2.sharing == machine::SecondLevel::private_caches) {
     result.l2 = nodes.second_level();

@@ -27,6 +27,9 @@ using Interconnects = std::vector<std::unique_ptr<memory::Interconnect>>;
                                            std::uint8_t memory_class, node::NodeArray& nodes,
                                            path::PathRecorder* path, walk::Observer* observer);
 
+/// Adds a cluster to the result: what its memory has counted in a frame that ends at `end`.
+void add_cluster(const memory::Interconnect& memory, sim::Ticks end, MachineResult& result);
+
 /// The part of the result that all schemes have: nodes, memory, database. Of a frame that ends at `end`,
 /// after NodeArray::finish(), or of what it has counted until then.
 [[nodiscard]] MachineResult common_result(const machine::MachineConfig& config, const sim::Engine& engine,

@@ -261,7 +261,7 @@ void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
     stack(warp, number).begin_ray();
   }
   if (!spilled_stacks_.empty()) {
-    spilled_stacks_[place_of(warp, number)].stack.clear();
+    spilled_stack(warp, number).stack.clear();
   }
   if (!lane_treelets_.empty()) {
     lane_treelet(warp, number) = no_treelet;
@@ -295,8 +295,7 @@ void SimtNode::follow(std::uint32_t warp, std::uint32_t number, std::uint32_t vi
   Wish wish = {warps_[warp].entered, number, static_cast<std::uint32_t>(wished_.size())};
   if (!stacks_.empty()) {
     // What is in memory is not known on chip.
-    const std::uint32_t near =
-        spilled_stacks_.empty() ? ~0U : spilled_stacks_[place_of(warp, number)].stack.near();
+    const std::uint32_t near = spilled_stacks_.empty() ? ~0U : spilled_stack(warp, number).stack.near();
     stack(warp, number)
         .visit(shared_.input.log.topology.nodes, node, std::min(near, shared_.input.config.prefetch.stack),
                [&](std::uint32_t waiting) { wished_.push_back(waiting); });

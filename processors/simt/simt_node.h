@@ -192,6 +192,16 @@ class SimtNode {
   void move_lane(std::size_t a, std::size_t b);
 
   // spilled_stacks.cpp: stacks that are in memory in part.
+  struct SpilledStack;
+  SpilledStack& spilled_stack(std::uint32_t warp, std::uint32_t number) {
+    return spilled_stacks_[place_of(warp, number)];
+  }
+  // The address of a line of a lane's stack.
+  [[nodiscard]] memory::Address stack_line(std::uint32_t warp, std::uint32_t number,
+                                           std::uint32_t line) const {
+    return shared_.stack_places.of(number_ % shared_.input.config.nodes, home_of(warp, number)) +
+           std::uint64_t{line} * shared_.input.config.reference_bytes();
+  }
   bool read_stack(std::uint32_t warp, std::uint32_t number);
   bool move_stack(std::uint32_t warp, std::uint32_t number, const std::uint32_t* visit);
   void write_stacks();

@@ -6,17 +6,16 @@
 
 namespace marti::processors::simt {
 
-// Has a lane go on with what it does after a take of move_stack(): with the next line that it reads back, or
-// with the visit for which it did that. False: there is nothing of the kind.
+// Once move_stack() has popped entries that are in memory: the lane wants the next of their lines, or, when
+// it has read them all, the first record of the visit that they were popped for. False: it has nothing to
+// read and no such visit.
 bool SimtNode::read_stack(std::uint32_t warp, std::uint32_t number) {
-  SpilledStack& its = spilled_stacks_[place_of(warp, number)];
+  SpilledStack& its = spilled_stack(warp, number);
   if (its.to_read > 0) {
     --its.to_read;
-    const walk::StackPlaces& places = shared_.stack_places;
-    const std::uint32_t bytes = shared_.input.config.reference_bytes();
-    const memory::Address stack = places.of(number_ % shared_.input.config.nodes, home_of(warp, number));
-    lane(warp, number).record = {stack + std::uint64_t{its.stack.lines() + its.to_read} * bytes, bytes,
-                                 memory::RecordKind::node, Test::none};
+    lane(warp, number).record = {stack_line(warp, number, its.stack.lines() + its.to_read),
+                                 shared_.input.config.reference_bytes(), memory::RecordKind::node,
+                                 Test::none};
     return true;
   }
   if (its.goes_on) {
@@ -31,14 +30,11 @@ bool SimtNode::read_stack(std::uint32_t warp, std::uint32_t number) {
 // A lane's visit is over: what it has pushed may fill lines, which are written. It goes on with another
 // visit, whose first record it would want, or none (null). True: it wants a line of its stack before.
 bool SimtNode::move_stack(std::uint32_t warp, std::uint32_t number, const std::uint32_t* visit) {
-  SpilledStack& its = spilled_stacks_[place_of(warp, number)];
+  SpilledStack& its = spilled_stack(warp, number);
   LaneStack& entries = stack(warp, number);
-  const memory::Address places =
-      shared_.stack_places.of(number_ % shared_.input.config.nodes, home_of(warp, number));
   for (std::uint32_t pushed = entries.pushed(); pushed > 0; --pushed) {
     its.stack.push(shared_.stack_size, [&](std::uint32_t line) {
-      spills_.push_back({warps_[warp].entered, number, warp,
-                         places + std::uint64_t{line} * shared_.input.config.reference_bytes()});
+      spills_.push_back({warps_[warp].entered, number, warp, stack_line(warp, number, line)});
     });
   }
   if (visit != nullptr) {

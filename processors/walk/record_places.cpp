@@ -6,6 +6,7 @@
 #include "memory/set_tags.h"
 #include "processors/walk/node_order.h"
 #include "sim/key_error.h"
+#include "sim/round_up.h"
 
 namespace marti::processors::walk {
 
@@ -53,13 +54,11 @@ StackPlaces stack_places(const program::WorkLog& log, const machine::MachineConf
     children = std::max<std::uint64_t>(children, node.leaf ? 0 : node.count);
   }
   const std::uint64_t entries = (deepest - (nodes.empty() ? 0 : nodes.front().level)) * (children - 1);
-  const auto up = [](std::uint64_t bytes, std::uint64_t multiple) {
-    return (bytes + multiple - 1) / multiple * multiple;
-  };
   StackPlaces places;
   places.begin = layout.room();
-  places.lane_bytes = up(entries * machine::stack_entry_bytes, config.reference_bytes());
-  places.node_bytes = up(places.lane_bytes * config.simt.lanes * config.simt.warps, config.cache.cache.line);
+  places.lane_bytes = sim::round_up(entries * machine::stack_entry_bytes, config.reference_bytes());
+  places.node_bytes =
+      sim::round_up(places.lane_bytes * config.simt.lanes * config.simt.warps, config.cache.cache.line);
   return places;
 }
 

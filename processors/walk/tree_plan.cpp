@@ -6,16 +6,11 @@
 
 #include "processors/walk/node_order.h"
 #include "sim/error.h"
+#include "sim/round_up.h"
 
 namespace marti::processors::walk {
 
-namespace {
-
-std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts,
                    const machine::MachineConfig& config)
@@ -89,16 +84,16 @@ void TreePlan::place_lists(const machine::MachineConfig& config) {
     }
   }
   for (LazyBranch& branch : lazy_) {
-    branch.block_bytes = round_up(branch.block_bytes, config.layout.record_alignment);
+    branch.block_bytes = sim::round_up(branch.block_bytes, config.layout.record_alignment);
     all_block_bytes_ += branch.block_bytes;
   }
 }
 
 void TreePlan::place_behind(const memory::Layout& layout, std::uint32_t line_bytes) {
   const std::uint64_t alignment = std::max<std::uint64_t>(section_alignment_, line_bytes);
-  dynamic_base_ = round_up(layout.end(), alignment);
+  dynamic_base_ = sim::round_up(layout.end(), alignment);
   lower_base_ =
-      round_up(dynamic_base_ + eager_list_bytes_, std::max<std::uint64_t>(alignment, record_alignment_));
+      sim::round_up(dynamic_base_ + eager_list_bytes_, std::max<std::uint64_t>(alignment, record_alignment_));
   end_ = first_block() + all_block_bytes_;
 }
 

@@ -194,11 +194,7 @@ void run_command(const RunArguments& arguments) {
     run_within_command(arguments, config, std::move(options));
     return;
   }
-  tables::refuse_other_results(arguments.directory, tables::run_name);
-  const sim::MadeDirectory made = show::prepare_output(arguments.directory);
-  if (!arguments.directory.empty()) {
-    host::load_image_library();
-  }
+  const sim::MadeDirectory made = show::prepare_run(arguments.directory);
   std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const run::RunResult result = run::run(config, std::move(options));
   const show::PlanVerdict verdict = arguments.verify_plan ? show::verify_plan(result) : show::PlanVerdict();
@@ -248,9 +244,7 @@ std::string identity_of_study(const std::string& name, const sim::Config& config
 template <class Study>
 void run_study(const char* name, const StudyArguments& arguments, const sim::Schema& schema,
                const Study& study) {
-  sim::Config config = arguments.config.empty()
-                           ? sim::Config::from_text(schema, "", "defaults", arguments.assignments)
-                           : keys::read_config(schema, arguments.config, arguments.assignments);
+  sim::Config config = keys::read_config_or_defaults(schema, arguments.config, arguments.assignments);
   tables::refuse_other_results(arguments.directory, tables::database_name);
   tables::refuse_store_of_sweep(arguments.directory);
   const sim::MadeDirectory made = show::prepare_output(arguments.directory);

@@ -85,12 +85,7 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
     throw sim::UserError("--plan: prints the plan, as text; leave out --json, --best and --share");
   }
   if (!arguments.best.empty()) {
-    const figures::Better better = figures::figure_named(arguments.best).better;
-    if (better != figures::Better::lower && better != figures::Better::higher) {
-      throw sim::UserError(
-          "--best: of " + arguments.best +
-          " neither a lower nor a higher value is better; `marti figures` says of which it is");
-    }
+    figures::require_direction(arguments.best, "--best: ");
   }
   const sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
   sweep::check_question(plan.question, plan.axes);

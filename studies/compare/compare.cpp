@@ -98,9 +98,7 @@ std::string compare_results(const std::string& a, const std::string& b, const Co
 }
 
 std::string html_of(const ComparisonPage& page) {
-  if (!report::have_vega_scripts()) {
-    throw sim::UserError(report::no_vega_scripts);
-  }
+  report::require_vega_scripts();
   report::ReportData data;
   data.kind = "comparison";
   data.title = page.title;

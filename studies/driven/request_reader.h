@@ -26,15 +26,15 @@ struct TraceDefaults {
 /// Requests of forms without nodes are of node 0.
 class RequestReader {
  public:
-  /// Throws UserError when the file cannot be read or is none of these.
+  /// Throws UserError when the file cannot be read or has another form.
   RequestReader(const std::filesystem::path& file, const TraceDefaults& defaults);
 
   /// Whether requests have times.
   [[nodiscard]] bool timed() const { return form_ != Form::load_store; }
   /// For people.
   [[nodiscard]] std::string_view form() const;
-  /// The next request; false at the end. Throws the UserError "file:line: reason" for what is none, for times
-  /// that decrease, and for values out of range.
+  /// Reads the next request; false at the end of the trace. Throws the UserError "file:line: reason" for a
+  /// line or packet that is no request, for times that decrease, and for values out of range.
   [[nodiscard]] bool next(processors::walk::Request& request);
 
  private:

@@ -83,12 +83,13 @@ std::string run_within(sim::Config& config, double tolerance, bool json, run::Ru
   run::refuse_several_frames(config, frame.frames);
   const processors::machine::MachineConfig machine = keys::read_machine(config);
   const keys::RecordConfig record = keys::read_record(config, true);
-  if (record.heat_maps || record.timeline || record.critical_path || record.interval > 0) {
-    config.fail(record.timeline        ? "record.timeline"
-                : record.heat_maps     ? "record.heat_maps"
-                : record.critical_path ? "record.critical_path"
-                                       : "record.interval",
-                "an estimate does nothing that could be recorded; leave --within out");
+  for (const auto& [asked, key] : {std::pair(record.timeline, "record.timeline"),
+                                   {record.heat_maps, "record.heat_maps"},
+                                   {record.critical_path, "record.critical_path"},
+                                   {record.interval > 0, "record.interval"}}) {
+    if (asked) {
+      config.fail(key, "an estimate does nothing that could be recorded; leave --within out");
+    }
   }
   config.refuse_unused();
   run::refuse_beyond_memory(config, frame, machine);

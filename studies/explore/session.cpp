@@ -196,9 +196,7 @@ std::optional<std::string> Session::report(const Settings& settings, std::string
                                            sim::WorkMeter* meter) const {
   bool made = false;
   std::string text = refused_or([&] {
-    if (!report::have_vega_scripts()) {
-      throw sim::UserError(report::no_vega_scripts);
-    }
+    report::require_vega_scripts();
     const tables::RunJson run(Json::parse(timed(settings, helps::Measuring::within_budget, meter)), name_);
     report::ReportData report = report::report_of_run(run);
     report.title += ", explored";

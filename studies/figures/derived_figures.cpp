@@ -373,4 +373,13 @@ const FigureEntry& figure_named(std::string_view name) {
   return *at->second;
 }
 
+void require_direction(std::string_view name, std::string_view place) {
+  const Better better = figure_named(name).better;
+  if (better != Better::lower && better != Better::higher) {
+    throw sim::UserError(
+        std::string(place) + "of " + std::string(name) +
+        " neither a lower nor a higher value is better; `marti figures` says of which it is");
+  }
+}
+
 }  // namespace marti::studies::figures

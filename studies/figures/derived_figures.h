@@ -52,5 +52,8 @@ void for_each_derived(const MeasuredCounts& counts, Visit&& visit) {
 /// The entry of a counted or derived figure. Throws UserError for an unknown name, with the nearest known
 /// one.
 [[nodiscard]] const FigureEntry& figure_named(std::string_view name);
+/// Throws UserError for a figure of which neither lower nor higher values are better, its message behind
+/// `place`; for an unknown name as figure_named().
+void require_direction(std::string_view name, std::string_view place = {});
 
 }  // namespace marti::studies::figures

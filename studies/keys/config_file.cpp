@@ -117,4 +117,10 @@ sim::Config read_config(const sim::Schema& schema, const fs::path& file,
   return sim::Config::from_text(schema, config.text, config.name, assignments);
 }
 
+sim::Config read_config_or_defaults(const sim::Schema& schema, const std::filesystem::path& file,
+                                    std::span<const std::string> assignments) {
+  return file.empty() ? sim::Config::from_text(schema, "", "defaults", assignments)
+                      : read_config(schema, file, assignments);
+}
+
 }  // namespace marti::studies::keys

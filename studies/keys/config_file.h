@@ -23,4 +23,9 @@ struct ConfigText {
 [[nodiscard]] sim::Config read_config(const sim::Schema& schema, const std::filesystem::path& file,
                                       std::span<const std::string> assignments = {});
 
+/// read_config(); without a name all keys have their defaults.
+[[nodiscard]] sim::Config read_config_or_defaults(const sim::Schema& schema,
+                                                  const std::filesystem::path& file,
+                                                  std::span<const std::string> assignments = {});
+
 }  // namespace marti::studies::keys

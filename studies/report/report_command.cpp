@@ -69,9 +69,7 @@ void report_command(const ReportArguments& arguments, void (*print)(const std::s
   }
   const fs::path file = arguments.output.empty() ? page_of(arguments.directory) : fs::path(arguments.output);
   const ReportData report = read_report(arguments.directory, arguments.budget);
-  if (!have_vega_scripts()) {
-    throw sim::UserError(no_vega_scripts);
-  }
+  require_vega_scripts();
   tables::check_page_target(file);
   const std::string page = report_page(report, vega_scripts());
   std::vector<Plot> plots;

@@ -80,6 +80,15 @@ sim::MadeDirectory prepare_output(const std::filesystem::path& directory) {
   return made;
 }
 
+sim::MadeDirectory prepare_run(const std::filesystem::path& directory) {
+  tables::refuse_other_results(directory, tables::run_name);
+  sim::MadeDirectory made = prepare_output(directory);
+  if (!directory.empty()) {
+    host::load_image_library();
+  }
+  return made;
+}
+
 WrittenRun write_output(const run::RunResult& result, const std::filesystem::path& directory) {
   const host::SignalsHeld held;
   const std::map<std::string, std::string> earlier = tables::files_of_run_in(directory);

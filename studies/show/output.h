@@ -15,6 +15,10 @@ namespace marti::studies::show {
 /// nothing.
 [[nodiscard]] sim::MadeDirectory prepare_output(const std::filesystem::path& directory);
 
+/// prepare_output() for the files of a run: refuses a directory with another kind of result, and finds out
+/// that images can be written.
+[[nodiscard]] sim::MadeDirectory prepare_run(const std::filesystem::path& directory);
+
 struct WrittenRun {
   std::vector<std::filesystem::path> files;
   std::string json;  ///< of the result, as result.json has it

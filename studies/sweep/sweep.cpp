@@ -131,7 +131,7 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   report.timed += static_cast<std::size_t>(std::ranges::count(done.machines, false));
   report.traced += static_cast<std::size_t>(std::ranges::count(needed, true));
   Progress progress({options.terminal, options.quiet, stderr, threads_of(options)});
-  SweepResults results(plan, *store, progress, options.meter);
+  SweepResults results(plan, *store, progress);
   const auto clean_up = [&] {
     progress.end();
     if (is_new) {

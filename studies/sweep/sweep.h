@@ -9,7 +9,6 @@
 
 #include "sim/config.h"
 #include "sim/memory_budget.h"
-#include "sim/work_meter.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/share.h"
 #include "studies/sweep/store/sweep_reader.h"
@@ -22,8 +21,6 @@ struct SweepOptions {
   bool terminal = false;            ///< progress as a bar
   bool quiet = false;               ///< no progress
   std::optional<Share> share{};     ///< times only this part of the machines
-  /// After its stop() the sweep throws sim::Stopped once the next result is saved. Null: nobody stops it.
-  const sim::WorkMeter* meter = nullptr;
 };
 
 /// What is known of the sweep before it runs, including what its store holds already. Writes nothing. Throws
@@ -45,7 +42,9 @@ struct SweepReport {
 /// Runs the part of the plan that is not in the store yet, nor in its parts, which are merged into it. With a
 /// share only that is timed, in a part of the store, and merged with the others by the process that ends
 /// last. `announce` is called with the plan as text before anything is done. A program that is ended by a
-/// signal says what is saved and exits with 128 + signal. Throws UserError; what is done by then is saved.
+/// signal says what is saved and exits with 128 + signal. Throws UserError, and sim::Stopped after stop() of
+/// the meter of a frame that is being traced, or replayed (FrameConfig::meter); what is done by then is
+/// saved.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
                       const std::function<void(const std::string&)>& announce);
 

@@ -321,7 +321,8 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
   });
 }
 
-// A shared memory that is asked for the same at the same times does the same, whoever asks.
+// A shared memory that gets the requests of a frame at their times from a trace counts what it counted in the
+// frame, where the nodes made them.
 TEST_P(Schemes, AMemoryDrivenByWhatItsNodesAskedForDoesWhatItDid) {
   class Listener final : public processors::walk::Observer {
    public:

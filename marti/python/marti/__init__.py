@@ -53,8 +53,8 @@ def run(
     """One frame on one machine.
 
     config: a TOML file; None: all keys have their defaults. Settings override the file: {"machine.nodes": 64}, or as
-    arguments with two underscores for the dot, machine__nodes=64, which count if both are given. directory: where all is written that `marti run -o`
-    writes, with what the run records. Error if a setting or the file is wrong."""
+    arguments with two underscores for the dot, machine__nodes=64, which count if both are given. directory: where all
+    is written that `marti run -o` writes, with what the run records. Error if a setting or the file is wrong."""
     return Result(_marti.run(_file(config), _assignments(settings, more), _file(directory)))
 
 

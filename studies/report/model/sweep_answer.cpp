@@ -168,16 +168,16 @@ std::vector<std::string> answer_of(const ReportPoints& sweep, const Chosen& chos
         "the shortest time are compared here{}.",
         sweep.frames, frame_text(sweep, fastest.frame)));
   }
-  if (const sweep::Noise noise = larger({fastest.noise.value_or(0.0)},
-                                        sweep.effects.noise.of_seeds ? sweep.effects.noise : sweep::Noise{});
-      fastest.noise || noise.of_seeds) {
+  const sweep::Noise& largest = sweep.effects.noise;
+  if (const std::optional<sweep::Noise> noise =
+          sweep::noise_of_fastest(fastest.noise, largest.of_seeds ? largest : sweep::Noise{})) {
     std::vector<double> times;
     for (const ReportPoint& point : sweep.points) {
       if (point.frame == fastest.frame) {
         times.push_back(point.figure("end"));
       }
     }
-    answer.push_back("Noise: " + sweep::fastest_noise_text(noise, sweep::within_noise(times, noise.band)) +
+    answer.push_back("Noise: " + sweep::fastest_noise_text(*noise, sweep::within_noise(times, noise->band)) +
                      ".");
   }
   add_advice("What would help it, measured", fastest);

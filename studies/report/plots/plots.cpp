@@ -96,9 +96,7 @@ std::string pdf_of(const std::string& svg) {
 std::vector<Plot> draw_plots(const ReportData& report, const fs::path& directory, bool pdf) {
   check_names(report.charts);
   refuse_results(directory);
-  if (!have_vega_scripts()) {
-    throw sim::UserError(no_vega_scripts);
-  }
+  require_vega_scripts();
   const Json drawings = draw(report);
   std::vector<Plot> plots;
   for (std::size_t i = 0; i < drawings.size(); ++i) {

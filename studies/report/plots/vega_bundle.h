@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "sim/error.h"
+
 namespace marti::studies::report {
 
 /// A script or a style of a page. The build works out its hash, by which the page's policy names it, and sees
@@ -28,6 +30,13 @@ inline constexpr const char* no_vega_scripts =
     "this marti was built without the scripts that draw charts; install node and npm (Debian: nodejs, npm), "
     "with "
     "network configure again (cmake --preset release -DMARTI_REPORT=ON says what is missing) and build";
+
+/// Throws the UserError that such a program has no charts.
+inline void require_vega_scripts() {
+  if (!have_vega_scripts()) {
+    throw sim::UserError(no_vega_scripts);
+  }
+}
 
 // The project's own scripts for charts, in a page and in node.
 [[nodiscard]] Script report_chart_style_js();     ///< colours

@@ -78,8 +78,7 @@ std::vector<bool> IntervalFigures::growing(const figures::Counts& whole) const {
 }
 
 std::vector<figures::Counts> IntervalFigures::counts_of_each(const figures::Counts& whole,
-                                                             figures::Count end) const {
-  const std::vector<bool> grows = growing(whole);
+                                                             const std::vector<bool>& grows) const {
   std::vector<figures::Counts> rows(states_.size(), figures::Counts(counted_entries().size()));
   for (std::size_t i = 0; i < counted_entries().size(); ++i) {
     const FigureEntry& entry = counted_entries()[i];
@@ -98,20 +97,19 @@ std::vector<figures::Counts> IntervalFigures::counts_of_each(const figures::Coun
     }
   }
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    rows[row][0] =
-        std::min<figures::Count>(end, figures::Count{length_} * (row + 1)) - figures::Count{length_} * row;
+    rows[row][0] = std::min<figures::Count>(*whole[0], figures::Count{length_} * (row + 1)) -
+                   figures::Count{length_} * row;
   }
   return rows;
 }
 
 tables::Table IntervalFigures::table(const figures::Counts& whole) const {
-  const figures::Count end = *whole[0];
-  const auto nodes = static_cast<double>(*figures::count_of(whole, "nodes"));
+  const figures::Count nodes = *figures::count_of(whole, "nodes");
   sim::ensure(
       counted_entries()[0].name == "end" && so_far_.size() >= std::max<std::size_t>(states_.size(), 1),
       "an interval was not looked at");
-  const std::vector<figures::Counts> rows = counts_of_each(whole, end);
   const std::vector<bool> grows = growing(whole);
+  const std::vector<figures::Counts> rows = counts_of_each(whole, grows);
 
   std::vector<tables::Column> columns = {
       tables::integer_column("from_ps", "ps", "begin of the interval"),
@@ -121,9 +119,9 @@ tables::Table IntervalFigures::table(const figures::Counts& whole) const {
   for (std::size_t row = 0; row < rows.size(); ++row) {
     cells[row] = {length_ * static_cast<sim::Ticks>(row),
                   length_ * static_cast<sim::Ticks>(row) + static_cast<sim::Ticks>(*rows[row][0])};
-    sim::ensure(std::accumulate(states_[row].begin(), states_[row].end(), sim::Sum{0}) ==
-                    *rows[row][0] * *figures::count_of(whole, "nodes"),
-                "the states of an interval are all of the nodes' time");
+    sim::ensure(
+        std::accumulate(states_[row].begin(), states_[row].end(), sim::Sum{0}) == *rows[row][0] * nodes,
+        "the states of an interval are all of the nodes' time");
   }
   const auto add = [&](tables::Column column, const auto& value_of) {
     columns.push_back(std::move(column));
@@ -140,7 +138,8 @@ tables::Table IntervalFigures::table(const figures::Counts& whole) const {
         [&](std::size_t row) { return states_[row][state]; });
     add(tables::real_column("share_" + name, "fraction", "share of the nodes' time in this state"),
         [&](std::size_t row) {
-          return static_cast<double>(states_[row][state]) / (nodes * static_cast<double>(*rows[row][0]));
+          return static_cast<double>(states_[row][state]) /
+                 (static_cast<double>(nodes) * static_cast<double>(*rows[row][0]));
         });
   }
   for (std::size_t i = 0; i < counted_entries().size(); ++i) {

@@ -55,9 +55,10 @@ class IntervalFigures final : public processors::walk::Observer {
   void counted(const processors::replay::MachineResult& result);
   // Which counted figures grow during the frame.
   [[nodiscard]] std::vector<bool> growing(const figures::Counts& whole) const;
-  // What each interval counted, its length as `end`, and figures that are the same all the time.
+  // What each interval counted of the figures that grow, its length as `end`, and the figures that have one
+  // value all the time.
   [[nodiscard]] std::vector<figures::Counts> counts_of_each(const figures::Counts& whole,
-                                                            figures::Count end) const;
+                                                            const std::vector<bool>& grows) const;
 
   const processors::machine::MachineConfig& machine_;
   sim::Ticks length_;

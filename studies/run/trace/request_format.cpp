@@ -135,9 +135,10 @@ void append_word(std::string& file, std::uint64_t word) {
   }
 }
 
-// ChampSim's input_instr (inc/trace_instruction.h), 64 bytes: the instruction's address, two bytes for
-// branches, two and four registers, two addresses written, four read. An address of 0 is none, so all are
-// moved up by `first_address`. The instruction's address tells kinds of records apart.
+// ChampSim's input_instr (inc/trace_instruction.h), 64 bytes: the address of the instruction; two bytes for
+// branches; two registers written and four read; two addresses written and four read. ChampSim takes address
+// 0 for none, so all addresses are moved up by `first_address`. The address of the instruction tells kinds of
+// records apart.
 AppendRequest append_champsim(const MachineConfig& /*machine*/, const Layout& layout) {
   return [&layout](const Request& request, std::string& file) {
     constexpr std::uint64_t first_instruction = 0x400000;

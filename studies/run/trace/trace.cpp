@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -72,7 +71,7 @@ void refuse_other_machines(const sim::Config& config, const MachineConfig& machi
 
 struct TooLong {};
 
-// A file of a trace, as far as it is written.
+// A file that is being written, under a temporary name, and what it has so far.
 struct TraceFile {
   explicit TraceFile(const std::filesystem::path& name) : file(name), stream(name) {}
 
@@ -95,19 +94,6 @@ struct TraceFile {
 
 using TraceFiles = std::vector<std::unique_ptr<TraceFile>>;
 
-void append_reference(const processors::passes::Reference& reference, std::array<char, 64>& line,
-                      std::size_t& length) {
-  char* at = line.data();
-  *at++ = reference.write ? '1' : '0';
-  *at++ = ' ';
-  at = std::to_chars(at, line.data() + 20, reference.address, 16).ptr;
-  *at++ = ' ';
-  const std::string_view kind = memory::record_kind_names[static_cast<std::size_t>(reference.kind)];
-  at = std::ranges::copy(kind, at).out;
-  *at++ = '\n';
-  length = static_cast<std::size_t>(at - line.data());
-}
-
 std::string file_name(std::string_view ending, std::uint32_t node) {
   return fmt::format("node-{:05}.{}", node, ending);
 }
@@ -124,12 +110,13 @@ TraceFiles write_references(const processors::program::WorkLog& log, const Machi
   for (const std::uint32_t node : nodes) {
     TraceFile& file =
         *files.emplace_back(std::make_unique<TraceFile>(directory / file_name(references, node)));
-    std::array<char, 64> line{};
+    std::string line;
     trace.for_each(node, [&](const processors::passes::Reference& reference) {
-      std::size_t length = 0;
-      append_reference(reference, line, length);
+      line.clear();
+      fmt::format_to(std::back_inserter(line), "{} {:x} {}\n", reference.write ? 1 : 0, reference.address,
+                     memory::record_kind_names[static_cast<std::size_t>(reference.kind)]);
       ++(reference.write ? file.writes : file.reads);
-      file.write({line.data(), length}, left);
+      file.write(line, left);
     });
     file.stream.close();
   }

@@ -118,6 +118,11 @@ std::size_t within_noise(std::span<const double> times, double noise) {
          1;
 }
 
+std::optional<Noise> noise_of_fastest(std::optional<double> own, const Noise& of_seeds) {
+  const Noise noise = larger({own.value_or(0.0)}, of_seeds);
+  return own || noise.of_seeds ? std::optional(noise) : std::nullopt;
+}
+
 std::string fastest_noise_text(const Noise& noise, std::size_t others) {
   return fmt::format("{} changes its frame by up to {}, and {} within that", noise.cause(),
                      tables::figure_text(noise.band, "fraction", "-"),
@@ -156,9 +161,8 @@ std::string fastest_text(const SweepReader& reader) {
   if (of_least == nullptr) {
     return {};
   }
-  const Noise noise = larger({of_least->noise.value_or(0.0)}, reader.noise_of_seeds());
-  if (of_least->noise || noise.of_seeds) {
-    text += "noise         " + fastest_noise_text(noise, within_noise(times, noise.band)) + "\n";
+  if (const std::optional<Noise> noise = noise_of_fastest(of_least->noise, reader.noise_of_seeds())) {
+    text += "noise         " + fastest_noise_text(*noise, within_noise(times, noise->band)) + "\n";
   }
   return text + "what helps    " + of_least->sentence + "\n";
 }

@@ -26,6 +26,10 @@ namespace marti::studies::sweep {
 /// How many frame times besides the least are within `noise` of it, a share of it.
 [[nodiscard]] std::size_t within_noise(std::span<const double> times, double noise);
 
+/// What is known of the noise of the fastest machine: its own by other orders of packets, where that was
+/// measured, or that of the sweep's seeds, whichever is larger. std::nullopt: neither was measured.
+[[nodiscard]] std::optional<Noise> noise_of_fastest(std::optional<double> own, const Noise& of_seeds);
+
 /// "another order of packets changes its frame by up to 0.40 %, and 2 other points are within that".
 [[nodiscard]] std::string fastest_noise_text(const Noise& noise, std::size_t others);
 

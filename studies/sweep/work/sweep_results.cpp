@@ -17,9 +17,8 @@ constexpr std::size_t enough_to_tell = 16;
 
 }  // namespace
 
-SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress,
-                           const sim::WorkMeter* meter)
-    : store_(store), progress_(progress), plan_(plan), meter_(meter), last_(sim::process_cpu_seconds()) {
+SweepResults::SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress)
+    : store_(store), progress_(progress), plan_(plan), last_(sim::process_cpu_seconds()) {
   const std::vector<bool> frames = store.frames_done();
   const std::vector<bool> machines = store.done();
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
@@ -49,19 +48,12 @@ std::int64_t SweepResults::nanoseconds_left() const {
       1e9 * (frames_.seconds_left() + of_machines + advice_seconds(machines_.seconds + of_machines)));
 }
 
-void SweepResults::end_if_stopped() const {
-  if (meter_ != nullptr) {
-    meter_->end_if_stopped();
-  }
-}
-
 void SweepResults::traced(std::size_t frame, const FrameRow& row, std::int64_t nanoseconds) {
   const std::lock_guard lock(mutex_);
   if (store_.add_frame(frame, row, nanoseconds)) {
     frames_.add(plan_.frames[frame].rays(), taken());
     progress_.traced(nanoseconds_left());
   }
-  end_if_stopped();
 }
 
 void SweepResults::timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds) {
@@ -71,13 +63,11 @@ void SweepResults::timed(std::size_t machine, const SweepRow& row, std::int64_t 
   ++timed_;
   machines_.add(plan_.frames[plan_.machines[machine].frame].rays(), taken());
   progress_.timed(nanoseconds_left());
-  end_if_stopped();
 }
 
 void SweepResults::advised(std::size_t machine, const Advice& advice) {
   const std::lock_guard lock(mutex_);
   store_.add_advice(machine, advice);
-  end_if_stopped();
 }
 
 std::size_t SweepResults::saved() {

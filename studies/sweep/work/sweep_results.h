@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <mutex>
 
-#include "sim/work_meter.h"
 #include "studies/sweep/store/sweep_store.h"
 #include "studies/sweep/work/progress.h"
 
@@ -14,10 +13,8 @@ namespace marti::studies::sweep {
 /// Thread-safe. Each result is in the store before the call that brings it returns.
 class SweepResults {
  public:
-  /// All must outlive this object. After stop() of the meter, which may be null, the calls that bring results
-  /// throw sim::Stopped once these are saved.
-  SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress,
-               const sim::WorkMeter* meter = nullptr);
+  /// All must outlive this object.
+  SweepResults(const SweepPlan& plan, SweepStore& store, Progress& progress);
 
   void traced(std::size_t frame, const FrameRow& row, std::int64_t nanoseconds);
   void timed(std::size_t machine, const SweepRow& row, std::int64_t cpu_nanoseconds);
@@ -45,7 +42,6 @@ class SweepResults {
     /// As long a ray as those done.
     [[nodiscard]] double seconds_left() const { return done == 0.0 ? 0.0 : seconds / done * left; }
   };
-  void end_if_stopped() const;
   /// Processor time since the last result.
   [[nodiscard]] double taken();
   /// 0 until enough machines were timed to tell.
@@ -55,7 +51,6 @@ class SweepResults {
   SweepStore& store_;
   Progress& progress_;
   const SweepPlan& plan_;
-  const sim::WorkMeter* meter_;
   std::size_t saved_ = 0;
   std::size_t to_time_ = 0;  // machines of the plan that were not there at first
   std::size_t timed_ = 0;    // of these

@@ -226,6 +226,8 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
                 make_word(Step::branch, 0)},
                {0, 9, 11, 13},
                {},
+               {},
+               {},
                {}}};
   StepTicks ticks;
   ticks.ray = {1, 2, 3, 4};
