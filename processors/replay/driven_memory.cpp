@@ -91,24 +91,24 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
 
   void post_ask(sim::Ticks time) { engine_.post(sim::Event::make(time, class_of(DrivenEvent::ask), 0, 0)); }
 
-  // Asks for all requests that have come and have a place.
+  // Asks for the next request if it has come and has a place. The one behind it has an event of its own: what
+  // the memory replies at this instant comes between them, as it does between nodes.
   void advance() {
-    for (;; has_request_ = false) {
+    if (!has_request_) {
+      has_request_ = next_(request_);
       if (!has_request_) {
-        has_request_ = next_(request_);
-        if (!has_request_) {
-          return;
-        }
-      }
-      if (options_.timed && request_.time > engine_.now()) {
-        post_ask(request_.time);
         return;
       }
-      waits_ = request_.write ? writes_[request_.node] == write_buffer_ : free_reads_[request_.node].empty();
-      if (waits_) {
-        return;
-      }
+    }
+    if (options_.timed && request_.time > engine_.now()) {
+      post_ask(request_.time);
+      return;
+    }
+    waits_ = request_.write ? writes_[request_.node] == write_buffer_ : free_reads_[request_.node].empty();
+    if (!waits_) {
       ask();
+      has_request_ = false;
+      post_ask(engine_.now());
     }
   }
 
