@@ -36,6 +36,7 @@ class Bvh : public Queries<Bvh> {
 
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
+  [[nodiscard]] const Bvh& bvh() const { return *this; }
   [[nodiscard]] const BvhOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] Traversal traversal() const;
@@ -50,6 +51,8 @@ class Bvh : public Queries<Bvh> {
   [[nodiscard]] std::uint64_t walk_bytes() const;
 
  private:
+  template <class Real>
+  friend class BvhMeets;    // bvh_meets.h
   friend class OrderedBvh;  // bvh_order.h
   friend class Queries<Bvh>;
   Bvh() = default;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "accel/queries.h"
 #include "accel/record_order.h"
 #include "accel/visitor.h"
+#include "accel/waiting_nodes.h"
 #include "accel/walk_order.h"
 
 namespace marti::accel {
@@ -31,8 +31,10 @@ class NearBoxes {
   NearBoxes(const BvhRay<Float>& ray, const BvhDistance<Real>& distance, const Best<Real>& best)
       : ray_(ray), distance_(distance), limit_(distance.limit(best.t)) {}
 
+  /// The distance beyond which a box holds nothing nearer than a hit at t.
+  [[nodiscard]] Float limit(const Real& t) const { return distance_.limit(t); }
   /// The best hit has changed.
-  void shorten(const Best<Real>& best) { limit_ = distance_.limit(best.t); }
+  void shorten(const Best<Real>& best) { limit_ = limit(best.t); }
   /// Whether a box that is entered at `in` holds nothing nearer than the best hit.
   [[nodiscard]] bool is_behind(Float in) const { return in > limit_; }
   /// Calls use(in, child) for the children whose boxes the ray meets, the lowest first.
@@ -65,7 +67,8 @@ class FarBoxes {
   FarBoxes(const FarRay& far, const BvhSpace& space, const Best<Real>& best) : far_(far), space_(space) {
     shorten(best);
   }
-  void shorten(const Best<Real>& best) { limit_ = plain(best.t) + far_.slack; }
+  [[nodiscard]] Float limit(const Real& t) const { return plain(t) + far_.slack; }
+  void shorten(const Best<Real>& best) { limit_ = limit(best.t); }
   [[nodiscard]] bool is_behind(Float in) const { return in > limit_; }
   template <class Use>
   void each_met(const Node& node, const Use& use) const {
@@ -85,48 +88,48 @@ class FarBoxes {
   double limit_ = 0.0;
 };
 
-/// The nodes that a ray has entered and not taken.
-template <class Waiting>
-class WaitingNodes {
- public:
-  /// `treelet`: of each node; used with WalkOrder::treelet_first.
-  WaitingNodes(WalkOrder order, std::span<const std::uint32_t> treelet) : order_(order), treelet_(treelet) {}
+/// Fills `met` with the children of a branch whose boxes the ray meets, the one that it enters first first.
+/// Returns how many they are.
+template <class Node, class Boxes>
+std::size_t met_children(const BvhView<Node>& view, std::uint32_t record, const Boxes& boxes,
+                         std::array<BvhWaiting<typename Boxes::Float>, Node::width>& met) {
+  const std::uint32_t first = view.first_child(record);
+  const Node& node = view.nodes[record];
+  std::size_t count = 0;
+  boxes.each_met(node, [&](typename Boxes::Float in, std::size_t c) {
+    std::size_t at = count++;
+    for (; at > 0 && met[at - 1].in > in; --at) {
+      met[at] = met[at - 1];
+    }
+    met[at] = {in, first + static_cast<std::uint32_t>(c), node.child(c)};
+  });
+  return count;
+}
 
-  /// Adds a branch's children, the nearest first.
-  void add(const Waiting* children, std::size_t count) {
-    if (order_ == WalkOrder::breadth_first) {
-      nodes_.insert(nodes_.end(), children, children + count);
-    } else {
-      nodes_.insert(nodes_.end(), std::make_reverse_iterator(children + count),
-                    std::make_reverse_iterator(children));
-    }
-  }
-  [[nodiscard]] bool empty() const { return next_ == nodes_.size(); }
-  /// Takes the next node. `visited`: the one visited last.
-  Waiting take(std::uint32_t visited) {
-    if (order_ == WalkOrder::breadth_first) {
-      return nodes_[next_++];
-    }
-    std::size_t at = nodes_.size() - 1;
-    if (order_ == WalkOrder::treelet_first) {
-      const std::uint32_t present = treelet_[visited];
-      std::size_t below = nodes_.size();
-      while (below > 0 && treelet_[nodes_[below - 1].number] != present) {
-        --below;
+/// Returns use(boxes) with what tests the boxes of branches for the ray; false where it misses the root's
+/// box.
+template <class Real, class Node, class Use>
+bool with_boxes(const BvhView<Node>& view, const Ray& ray, const RaySetup<Real>& setup,
+                const Best<Real>& best, const Use& use) {
+  if constexpr (!std::is_same_v<Real, float>) {
+    const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
+    const BvhDistance<Real> distance(view.space, ray, start, setup);
+    if (!start.far && distance.usable()) {
+      if (!start.hits_root) {
+        return false;
       }
-      at = below > 0 ? below - 1 : at;
+      const BvhRay<BoxFloat<Real>> moved = moved_ray(view.space, ray, start, setup);
+      return use(NearBoxes<Real, Node>(moved, distance, best));
     }
-    const Waiting taken = nodes_[at];
-    nodes_.erase(nodes_.begin() + static_cast<std::ptrdiff_t>(at));
-    return taken;
   }
-
- private:
-  WalkOrder order_;
-  std::span<const std::uint32_t> treelet_;
-  std::vector<Waiting> nodes_;
-  std::size_t next_ = 0;  // breadth first: those before it are taken
-};
+  const scenes::Bounds& box = view.frame->box;
+  if (box.empty()) {
+    return false;
+  }
+  const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
+  return far.may_hit(far.span(box.lo, box.hi), plain(best.t)) &&
+         use(FarBoxes<Real, Node>(far, view.space, best));
+}
 
 template <bool Any, class Real, class Node, class Boxes, class Visitor>
 bool walk_bvh_in_order(const BvhView<Node>& view, WaitingNodes<BvhWaiting<typename Boxes::Float>> waiting,
@@ -136,21 +139,12 @@ bool walk_bvh_in_order(const BvhView<Node>& view, WaitingNodes<BvhWaiting<typena
   for (;;) {
     if (now.child.entries == 0) {
       visitor.branch(now.number);
-      const std::uint32_t first = view.first_child(now.child.record);
-      const Node& node = view.nodes[now.child.record];
       std::array<Waiting, Node::width> met;
-      std::size_t count = 0;
-      boxes.each_met(node, [&](typename Boxes::Float in, std::size_t c) {
-        std::size_t at = count++;
-        for (; at > 0 && met[at - 1].in > in; --at) {
-          met[at] = met[at - 1];
-        }
-        met[at] = {in, first + static_cast<std::uint32_t>(c), node.child(c)};
-      });
+      const std::size_t count = met_children(view, now.child.record, boxes, met);
       if constexpr (SeesEntered<Visitor>) {
         EnteredChildren entered;
         for (std::size_t k = 0; k < count; ++k) {
-          entered.add(met[k].number - first);
+          entered.add(met[k].number - view.first_child(now.child.record));
         }
         visitor.entered(entered);
       }
@@ -183,6 +177,7 @@ class OrderedBvh : public Queries<OrderedBvh> {
   }
 
   [[nodiscard]] const TriangleSet& triangles() const { return bvh_.triangles(); }
+  [[nodiscard]] const Bvh& bvh() const { return bvh_; }
 
  private:
   friend class Queries<OrderedBvh>;
@@ -190,32 +185,12 @@ class OrderedBvh : public Queries<OrderedBvh> {
   template <bool Any, class Real, class Visitor>
   bool query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
     static_assert(!has_mailboxes<Visitor>);
-    return bvh_.with_view([&](const auto& view) { return walk<Any>(view, ray, setup, best, visitor); });
-  }
-
-  template <bool Any, class Real, class Node, class Visitor>
-  bool walk(const BvhView<Node>& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
-            Visitor& visitor) const {
-    if constexpr (!std::is_same_v<Real, float>) {
-      const WalkStart<Real> start = start_walk(*view.frame, ray, setup);
-      const BvhDistance<Real> distance(view.space, ray, start, setup);
-      if (!start.far && distance.usable()) {
-        if (!start.hits_root) {
-          return false;
-        }
-        const BvhRay<BoxFloat<Real>> moved = moved_ray(view.space, ray, start, setup);
-        return walk_bvh_in_order<Any>(view, {order_, treelet_}, NearBoxes<Real, Node>(moved, distance, best),
-                                      setup, best, visitor);
-      }
-    }
-    const scenes::Bounds& box = view.frame->box;
-    if (box.empty()) {
-      return false;
-    }
-    const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
-    return far.may_hit(far.span(box.lo, box.hi), plain(best.t)) &&
-           walk_bvh_in_order<Any>(view, {order_, treelet_}, FarBoxes<Real, Node>(far, view.space, best),
-                                  setup, best, visitor);
+    return bvh_.with_view([&](const auto& view) {
+      return with_boxes(view, ray, setup, best, [&]<class Boxes>(const Boxes& boxes) {
+        return walk_bvh_in_order<Any>(view, WaitingNodes<BvhWaiting<typename Boxes::Float>>(order_, treelet_),
+                                      boxes, setup, best, visitor);
+      });
+    });
   }
 
   const Bvh& bvh_;

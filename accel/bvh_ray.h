@@ -62,6 +62,15 @@ struct BvhWaiting {
   BvhChild child;
 };
 
+/// Tests a primitive of a leaf. True when it became the best hit.
+template <class Real, class Node>
+inline bool test_bvh_primitive(const BvhView<Node>& view, const BvhPrimitive& primitive,
+                               const RaySetup<Real>& setup, Best<Real>& best) {
+  return primitive.id < view.triangles->triangles()
+             ? intersect(setup, primitive.corners, primitive.id, best)
+             : intersect_quadric(setup, view.triangles->quadric(primitive.id), primitive.id, best);
+}
+
 /// Tests the primitives of the leaf `number` in list order and tells the visitor. True when an occlusion
 /// query (`Any`) found its hit.
 template <bool Any, class Real, class Node, class Visitor>
@@ -73,9 +82,7 @@ inline bool test_bvh_leaf(const BvhView<Node>& view, std::uint32_t number, const
     if (already_tested<Real>(visitor, k, id)) {
       continue;
     }
-    const bool hit = id < view.triangles->triangles()
-                         ? intersect(setup, list[k].corners, id, best)
-                         : intersect_quadric(setup, view.triangles->quadric(id), id, best);
+    const bool hit = test_bvh_primitive(view, list[k], setup, best);
     if constexpr (Any) {
       if (hit) {
         visitor.leaf(number, k + 1, leaf.entries);

@@ -41,6 +41,23 @@ void check_stack(const MachineConfig& config) {
   }
 }
 
+void check_share(const MachineConfig& config) {
+  if (config.rt.share == RtShare::none) {
+    return;
+  }
+  if (config.rt.warps == 0) {
+    throw sim::KeyError("rt.share", "is for lanes of a ray-tracing unit; set rt.warps to at least 1");
+  }
+  for (const auto& [key, value] :
+       {std::pair{"rt.stack", config.rt.stack}, {"prefetch.stack", config.prefetch.stack}}) {
+    if (value > 0) {
+      throw sim::KeyError(key,
+                          "must be 0 with rt.share = \"warp\": another lane may take what waits on a "
+                          "lane's stack");
+    }
+  }
+}
+
 }  // namespace
 
 void check_simt(const MachineConfig& config) {
@@ -53,6 +70,9 @@ void check_simt(const MachineConfig& config) {
     }
     if (config.rt.sort != RaySort::none) {
       throw sim::KeyError("rt.sort", "is for node.kind = \"simt\"; set it to \"none\"");
+    }
+    if (config.rt.share != RtShare::none) {
+      throw sim::KeyError("rt.share", "is for node.kind = \"simt\"; set it to \"none\"");
     }
     if (config.rt.stack > 0) {
       throw sim::KeyError("rt.stack", "is for node.kind = \"simt\"; set it to 0");
@@ -79,6 +99,7 @@ void check_simt(const MachineConfig& config) {
     }
   }
   check_stack(config);
+  check_share(config);
   check_range("rt.sort_rays", rt.sort_rays, 1, most_sorted_rays);
   if (rt.sort != RaySort::none && rt.warps == 0) {
     throw sim::KeyError("rt.sort", "is for rays that enter a ray-tracing unit; set rt.warps to at least 1");

@@ -26,6 +26,11 @@ inline constexpr std::array<std::string_view, 4> rt_scheduler_names = {"oldest",
 enum class RtCoalesce : std::uint8_t { none, warp, unit };
 inline constexpr std::array<std::string_view, 3> rt_coalesce_names = {"none", "warp", "unit"};
 
+/// Whose entries lanes of a warp in the unit take that have no work of their own: nobody's, or those of other
+/// lanes of the warp.
+enum class RtShare : std::uint8_t { none, warp };
+inline constexpr std::array<std::string_view, 2> rt_share_names = {"none", "warp"};
+
 /// By what rays of several warps are sorted before they enter the unit. kind: bounce, then kind of ray;
 /// direction, origin: see program/ray_grid.h.
 enum class RaySort : std::uint8_t { none, kind, direction, origin };
@@ -64,6 +69,7 @@ struct RtUnitConfig {
   std::uint32_t warps = 4;  ///< in the unit at once, 0 to most_warps; 0: there is no unit
   RtScheduler scheduler = RtScheduler::oldest;
   RtCoalesce coalesce = RtCoalesce::warp;
+  RtShare share = RtShare::none;
   std::int64_t box_cycles = 8;
   std::int64_t leaf_cycles = 4;
   std::int64_t triangle_cycles = 8;

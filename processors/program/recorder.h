@@ -36,6 +36,41 @@ struct NullRecorder : accel::NullVisitor {
   void texel(std::uint32_t /*texture*/, std::uint32_t /*texel*/) {}
 };
 
+/// What a ray meets, as the words of accel/bvh_meets.h.
+class RayMeets {
+ public:
+  virtual ~RayMeets() = default;
+  /// Adds the ray's words. Not for several threads at a time.
+  virtual void add(const accel::Ray& ray, std::vector<std::uint32_t>& words) = 0;
+};
+
+/// Words that a row has beside its steps.
+class BesideWords {
+ public:
+  void begin_row(std::uint32_t width) {
+    words_.clear();
+    begin_.clear();
+    begin_.reserve(std::size_t{width} + 1);
+  }
+  void begin_pixel() { begin_.push_back(static_cast<std::uint32_t>(words_.size())); }
+  [[nodiscard]] std::vector<std::uint32_t>& words() { return words_; }
+  /// Copies the row out at its exact size. Throws UserError for more words than offsets can say.
+  void end_row(RowWords& row, const sim::ChunkAllocator<std::uint32_t>& chunks) {
+    if (words_.size() > std::numeric_limits<std::uint32_t>::max()) {
+      throw sim::UserError(
+          "what is recorded beside one image row exceeds 2^32 words; lower image.max_depth, image.samples or "
+          "the image's width");
+    }
+    begin_pixel();
+    row.words = sim::ChunkVector<std::uint32_t>(words_.begin(), words_.end(), chunks);
+    row.begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
+  }
+
+ private:
+  std::vector<std::uint32_t> words_;
+  std::vector<std::uint32_t> begin_;
+};
+
 /// Writes one image row at a time. The words go through a raw pointer into a buffer that the recorder
 /// keeps from row to row, because most of recording's cost would be growing and clearing vectors; a
 /// finished row is copied out at its exact size.
@@ -43,20 +78,21 @@ class RowRecorder {
  public:
   void phase(Phase /*phase*/, RayKind /*kind*/) {}
 
-  /// `grid`: by which the row also gets a word for each ray; null: it gets none.
-  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr) {
+  /// `grid`: by which the row also gets a word for each ray; `meets`: what each ray meets. Null: it gets
+  /// none.
+  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr, RayMeets* meets = nullptr) {
     next_ = buffer_.get();
     begin_.clear();
     begin_.reserve(std::size_t{width} + 1);
     grid_ = grid;
-    rays_.clear();
-    rays_begin_.clear();
+    rays_.begin_row(width);
+    meeting_ = meets;
+    meets_.begin_row(width);
   }
   void begin_pixel() {
     begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
-    if (grid_ != nullptr) {
-      rays_begin_.push_back(static_cast<std::uint32_t>(rays_.size()));
-    }
+    rays_.begin_pixel();
+    meets_.begin_pixel();
   }
 
   void branch(std::uint32_t node) { put(make_word(Step::branch, node)); }
@@ -79,33 +115,50 @@ class RowRecorder {
   void ray(RayKind kind, std::uint32_t bounce, const accel::Ray& ray) {
     put(make_word(Step::ray, ray_operand(kind, bounce)));
     if (grid_ != nullptr) {
-      rays_.push_back(grid_->word(ray));
+      rays_.words().push_back(grid_->word(ray));
+    }
+    if (meeting_ != nullptr) {
+      meeting_->add(ray, meets_.words());
     }
   }
   void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
   void light(std::uint32_t light) { put(make_word(Step::light, light)); }
   void texel(std::uint32_t texture, std::uint32_t texel) { put(make_word(Step::texel, texture), texel); }
 
-  /// The words of a pixel that was recorded before.
-  void copy(std::span<const std::uint32_t> words) {
+  /// What a pixel was recorded as before.
+  void copy(const LogRow& row, std::uint32_t x) {
+    const std::span<const std::uint32_t> words = row.pixel(x);
     if (static_cast<std::size_t>(end_ - next_) < words.size()) {
       grow(words.size());
     }
     next_ = std::copy(words.begin(), words.end(), next_);
+    copy_beside(row.rays, x, rays_);
+    copy_beside(row.meets, x, meets_);
   }
-
-  /// What is to go with the words of copy(), where rays have words.
-  void copy_rays(std::span<const std::uint32_t> rays) { rays_.insert(rays_.end(), rays.begin(), rays.end()); }
 
   /// Ends the row and copies it out.
   void end_row(LogRow& row) {
-    begin_pixel();
+    begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
     const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
     row.words = sim::ChunkVector<std::uint32_t>(buffer_.get(), next_, chunks);
     row.begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
-    row.rays = sim::ChunkVector<std::uint32_t>(rays_.begin(), rays_.end(), chunks);
-    row.rays_begin = sim::ChunkVector<std::uint32_t>(rays_begin_.begin(), rays_begin_.end(), chunks);
+    if (grid_ != nullptr) {
+      rays_.end_row(row.rays, chunks);
+    }
+    if (meeting_ != nullptr) {
+      meets_.end_row(row.meets, chunks);
+    }
   }
+
+ protected:
+  static void copy_beside(const RowWords& row, std::uint32_t x, BesideWords& beside) {
+    if (!row.begin.empty()) {
+      const std::span<const std::uint32_t> words = row.pixel(x);
+      beside.words().insert(beside.words().end(), words.begin(), words.end());
+    }
+  }
+
+  sim::Chunks chunks_;  // of the rows
 
  private:
   struct Free {
@@ -148,42 +201,34 @@ class RowRecorder {
   std::uint32_t* end_ = nullptr;
   std::vector<std::uint32_t> begin_;
   const RayGrid* grid_ = nullptr;
-  std::vector<std::uint32_t> rays_;
-  std::vector<std::uint32_t> rays_begin_;
-
- protected:
-  sim::Chunks chunks_;  // of the rows
+  BesideWords rays_;
+  RayMeets* meeting_ = nullptr;
+  BesideWords meets_;
 };
 
 /// Writes beside the words which children of each branch the rays enter.
 class EnteredRecorder : public RowRecorder {
  public:
-  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr) {
-    RowRecorder::begin_row(width, grid);
-    entered_.clear();
-    begin_.clear();
-    begin_.reserve(std::size_t{width} + 1);
+  void begin_row(std::uint32_t width, const RayGrid* grid = nullptr, RayMeets* meets = nullptr) {
+    RowRecorder::begin_row(width, grid, meets);
+    entered_.begin_row(width);
   }
   void begin_pixel() {
     RowRecorder::begin_pixel();
-    begin_.push_back(static_cast<std::uint32_t>(entered_.size()));
+    entered_.begin_pixel();
   }
-  void entered(accel::EnteredChildren children) { entered_.push_back(children.word()); }
-  /// What is to go with the words of copy().
-  void copy_entered(std::span<const std::uint32_t> words) {
-    entered_.insert(entered_.end(), words.begin(), words.end());
+  void entered(accel::EnteredChildren children) { entered_.words().push_back(children.word()); }
+  void copy(const LogRow& row, std::uint32_t x) {
+    RowRecorder::copy(row, x);
+    copy_beside(row.entered, x, entered_);
   }
   void end_row(LogRow& row) {
     RowRecorder::end_row(row);
-    begin_.push_back(static_cast<std::uint32_t>(entered_.size()));
-    const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
-    row.entered = sim::ChunkVector<std::uint32_t>(entered_.begin(), entered_.end(), chunks);
-    row.entered_begin = sim::ChunkVector<std::uint32_t>(begin_.begin(), begin_.end(), chunks);
+    entered_.end_row(row.entered, sim::ChunkAllocator<std::uint32_t>(chunks_));
   }
 
  private:
-  std::vector<std::uint32_t> entered_;
-  std::vector<std::uint32_t> begin_;
+  BesideWords entered_;
 };
 
 }  // namespace marti::processors::program

@@ -75,6 +75,9 @@ struct RenderOptions {
   bool entered = false;
   /// The log also has for each ray where it begins and where it goes (ray_grid.h), four bytes a ray.
   bool ray_words = false;
+  /// Of a bounding volume hierarchy without mailboxes: the log also has what each ray meets
+  /// (accel/bvh_meets.h), several times the bytes of its visits.
+  bool meets = false;
   /// The pixels that are traced; null for all. The others are those of `before`, or else black and without
   /// words in the log. Must be of the image's size.
   const PixelSet* only = nullptr;

@@ -1,10 +1,32 @@
-// The tracer with a bounding volume hierarchy whose nodes are taken in another order than depth first, in a
-// file of its own because it compiles that structure once more.
+// The tracer with a bounding volume hierarchy whose nodes are taken in another order than depth first, and
+// what rays meet in one, in a file of its own because it compiles that structure once more.
+#include "accel/bvh_meets.h"
 #include "accel/bvh_order.h"
 #include "processors/program/render_rows.h"
 #include "sim/key_error.h"
 
 namespace marti::processors::program {
+
+namespace {
+
+template <class Real>
+class BvhRayMeets final : public RayMeets {
+ public:
+  explicit BvhRayMeets(const accel::Bvh& bvh) : meets_(bvh) {}
+  void add(const accel::Ray& ray, std::vector<std::uint32_t>& words) override { meets_.add(ray, words); }
+
+ private:
+  accel::BvhMeets<Real> meets_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayMeets> make_ray_meets(const accel::Bvh& bvh, bool floats) {
+  if (floats) {
+    return std::make_unique<BvhRayMeets<float>>(bvh);
+  }
+  return std::make_unique<BvhRayMeets<double>>(bvh);
+}
 
 void render_in_order(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                      const RenderOptions& options, unsigned threads, std::vector<LogRow>& rows,

@@ -2,6 +2,7 @@
 // instantiate it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -26,9 +27,13 @@ namespace marti::processors::program {
 template <typename Recorder>
 struct Worker {
   Recorder recorder;
+  std::unique_ptr<RayMeets> meets;  // where the rows have what rays meet
   RayCounts rays;
   std::uint64_t hit_hash = 0;
 };
+
+/// What rays meet in a bounding volume hierarchy whose hits are computed in floats or in doubles.
+[[nodiscard]] std::unique_ptr<RayMeets> make_ray_meets(const accel::Bvh& bvh, bool floats);
 
 /// Renders all rows. A RowRecorder, with mailboxes or without, writes its rows to `rows`.
 template <typename Real, typename Structure, typename Recorder>
@@ -46,7 +51,12 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
       worker.recorder.prepare(structure.triangles().size());
     }
     if constexpr (recording) {
-      worker.recorder.begin_row(options.width, options.ray_words ? &grid : nullptr);
+      if constexpr (requires { structure.bvh(); }) {
+        if (options.meets && worker.meets == nullptr) {
+          worker.meets = make_ray_meets(structure.bvh(), options.floats);
+        }
+      }
+      worker.recorder.begin_row(options.width, options.ray_words ? &grid : nullptr, worker.meets.get());
     }
     glm::vec3* pixels = frame.image.pixels.data() + std::size_t{y} * options.width;
     for (std::uint32_t x = 0; x < options.width; ++x) {
@@ -55,13 +65,7 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
         if (options.before != nullptr) {
           pixels[x] = options.before->image.at(x, y);
           if constexpr (recording) {
-            worker.recorder.copy(options.before->log->pixel(x, y));
-            if (options.ray_words) {
-              worker.recorder.copy_rays(options.before->log->ray_words(x, y));
-            }
-            if constexpr (accel::SeesEntered<Recorder>) {
-              worker.recorder.copy_entered(options.before->log->entered(x, y));
-            }
+            worker.recorder.copy(options.before->log->rows[y], x);
           }
         }
         continue;

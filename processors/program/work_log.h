@@ -123,18 +123,24 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
   return tests;
 }
 
-/// One image row: the words of its pixels from left to right. Pixel x is words[begin[x] .. begin[x + 1]).
-struct LogRow {
+/// Words of the pixels of an image row, from left to right: those of pixel x are words[begin[x] .. begin[x +
+/// 1]).
+struct RowWords {
   sim::ChunkVector<std::uint32_t> words;
-  sim::ChunkVector<std::uint32_t> begin;  ///< width + 1 offsets
-  /// Beside the words, where RenderOptions::entered asks for it: of each visit to a branch an
-  /// accel::EnteredChildren, and where those of each pixel begin, width + 1 offsets. Else empty.
-  sim::ChunkVector<std::uint32_t> entered;
-  sim::ChunkVector<std::uint32_t> entered_begin;
-  /// Beside the words, where RenderOptions::ray_words asks for it: a word for each ray (ray_grid.h), and
-  /// where those of each pixel begin, width + 1 offsets. Else empty.
-  sim::ChunkVector<std::uint32_t> rays;
-  sim::ChunkVector<std::uint32_t> rays_begin;
+  sim::ChunkVector<std::uint32_t> begin;  ///< width + 1 offsets; empty if the row has no such words
+
+  [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x) const {
+    return std::span(words).subspan(begin[x], begin[x + 1] - begin[x]);
+  }
+};
+
+/// One image row: its steps, and what stands beside them where it is asked for (RenderOptions).
+struct LogRow : RowWords {
+  RowWords entered;  ///< of each visit to a branch an accel::EnteredChildren
+  RowWords rays;     ///< a word for each ray (ray_grid.h)
+  RowWords meets;    ///< what each ray meets (accel/bvh_meets.h)
+
+  [[nodiscard]] std::array<const RowWords*, 4> all() const { return {this, &entered, &rays, &meets}; }
 };
 
 /// How much a log holds; also the denominators of bytes per ray and steps per ray.
@@ -184,20 +190,24 @@ struct WorkLog {
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
   std::vector<LogRow> rows;                  ///< `height` of them, from the top
 
-  /// Whether it has, of each visit to a branch, the children that the ray entered.
-  [[nodiscard]] bool has_entered() const { return !rows.empty() && !rows.front().entered_begin.empty(); }
+  /// Whether it has words beside the steps.
+  [[nodiscard]] bool has(RowWords LogRow::*beside) const {
+    return !rows.empty() && !(rows.front().*beside).begin.empty();
+  }
+  [[nodiscard]] bool has_entered() const { return has(&LogRow::entered); }
+  [[nodiscard]] bool has_ray_words() const { return has(&LogRow::rays); }
+  [[nodiscard]] bool has_meets() const { return has(&LogRow::meets); }
   /// An accel::EnteredChildren for each branch that the pixel's rays visit, in their order; has_entered().
   [[nodiscard]] std::span<const std::uint32_t> entered(std::uint32_t x, std::uint32_t y) const {
-    const LogRow& row = rows[y];
-    return std::span(row.entered)
-        .subspan(row.entered_begin[x], row.entered_begin[x + 1] - row.entered_begin[x]);
+    return rows[y].entered.pixel(x);
   }
-  /// Whether it has words of rays.
-  [[nodiscard]] bool has_ray_words() const { return !rows.empty() && !rows.front().rays_begin.empty(); }
   /// A word for each of the pixel's rays, in their order; has_ray_words().
   [[nodiscard]] std::span<const std::uint32_t> ray_words(std::uint32_t x, std::uint32_t y) const {
-    const LogRow& row = rows[y];
-    return std::span(row.rays).subspan(row.rays_begin[x], row.rays_begin[x + 1] - row.rays_begin[x]);
+    return rows[y].rays.pixel(x);
+  }
+  /// What each of the pixel's rays meets, in their order; has_meets().
+  [[nodiscard]] std::span<const std::uint32_t> meets(std::uint32_t x, std::uint32_t y) const {
+    return rows[y].meets.pixel(x);
   }
   [[nodiscard]] std::uint32_t triangles() const {
     return primitives - static_cast<std::uint32_t>(quadrics.size());
@@ -206,8 +216,7 @@ struct WorkLog {
     return primitive < triangles() ? accel::PrimitiveKind::triangle : quadrics[primitive - triangles()];
   }
   [[nodiscard]] std::span<const std::uint32_t> pixel(std::uint32_t x, std::uint32_t y) const {
-    const LogRow& row = rows[y];
-    return std::span(row.words).subspan(row.begin[x], row.begin[x + 1] - row.begin[x]);
+    return rows[y].pixel(x);
   }
 };
 

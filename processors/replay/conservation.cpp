@@ -119,6 +119,8 @@ void check_simt(const program::WorkLog& log, const machine::MachineConfig& confi
   walk::require(counts.sorted_rays <= counts.sorted_warps * config.simt.lanes &&
                     counts.sorted_warps <= counts.sorted_rays,
                 "a warp of sorted rays has a ray, and no more rays than lanes");
+  walk::require(config.rt.share != machine::RtShare::none || counts.helps == 0,
+                "lanes help each other where they may");
   // Of a bvh a leaf that is taken as one voxel has no record.
   const cost::StepCounts steps = result.steps();
   const bool leaf_records = !accel::walks_bvh(log.traversal);

@@ -11,6 +11,7 @@
 #include "processors/node/dynamic_cursor.h"
 #include "processors/node/tree_copies.h"
 #include "processors/simt/lane_walk.h"
+#include "processors/simt/shared_rays.h"
 #include "processors/simt/warp.h"
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/log_cursor.h"
@@ -90,8 +91,11 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
             : std::uint64_t{config.simt.warps} * config.simt.lanes /
                       std::max(1U, std::min(config.simt.lanes, config.rt.sort_rays)) +
                   config.simt.warps;
-    warps = bytes_a_node_at_most + (config.simt.warps + groups) *
-                                       (sizeof(simt::Warp) + 1024 + config.simt.lanes * sizeof(simt::Lane));
+    constexpr std::uint64_t bytes_a_helping_lane = sizeof(simt::SharedLane) + sizeof(simt::SharedRay) + 512;
+    const std::uint64_t bytes_a_lane =
+        sizeof(simt::Lane) + (config.rt.share == machine::RtShare::none ? 0 : bytes_a_helping_lane);
+    warps = bytes_a_node_at_most +
+            (config.simt.warps + groups) * (sizeof(simt::Warp) + 1024 + config.simt.lanes * bytes_a_lane);
   }
   // At most 2^24 nodes of five caches of 2^28 lines: this cannot overflow.
   const std::uint64_t events =

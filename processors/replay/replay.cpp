@@ -254,6 +254,12 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
                         "the frame was traced without noting where rays begin and go; begin anew with this "
                         "rt.sort");
   }
+  if (config.rt.share != machine::RtShare::none && !log.has_meets()) {
+    throw sim::KeyError(
+        "rt.share",
+        "the frame was traced without noting what each ray meets, which only a bvh can; begin "
+        "anew with this rt.share");
+  }
   if (config.layout.leaf == memory::LeafLayout::inline_records && !accel::walks_bvh(log.traversal)) {
     throw sim::KeyError("layout.leaf", "\"inline\" is for a bvh; use \"list\"");
   }

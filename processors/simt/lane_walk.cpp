@@ -19,6 +19,9 @@ void LaneWalk::begin_pixel(Lane& lane, std::uint32_t x, std::uint32_t y) const {
   lane = {};
   lane.word = words.data();
   lane.word_end = words.data() + words.size();
+  if (input_.config.rt.share != machine::RtShare::none) {
+    lane.meets = input_.log.meets(x, y).data();
+  }
 }
 
 bool LaneWalk::node_record(Lane& lane, std::uint32_t node, Test test) const {
@@ -45,27 +48,50 @@ Record LaneWalk::first_record(std::uint32_t node) const {
   return lane.record;
 }
 
+bool LaneWalk::visit_leaf(Lane& lane, std::uint32_t node, std::uint32_t tests,
+                          cost::StepCounts& steps) const {
+  ++steps.leaves;
+  lane.entry = entries_ + topology_[node].first;
+  lane.entry_end = lane.entry + tests;
+  lane.list = lists_ ? tests : 0;
+  steps.lists += lane.list != 0 ? 1 : 0;
+  return node_record(lane, node, Test::leaf);
+}
+
+bool LaneWalk::next_of_leaf(Lane& lane, cost::StepCounts& steps) const {
+  if (lane.list != 0) {
+    const auto kind = memory::RecordKind::list;
+    const auto first = static_cast<std::uint64_t>(lane.entry - entries_);
+    lane.record = {input_.layout.address(kind, first), std::uint64_t{lane.list} * entry_bytes_, kind,
+                   Test::none};
+    lane.list = 0;
+    return true;
+  }
+  if (lane.entry == lane.entry_end) {
+    return false;
+  }
+  const auto kind = memory::RecordKind::primitive;
+  const auto place = static_cast<std::uint64_t>(lane.entry - entries_);
+  const std::uint32_t primitive = *lane.entry++;
+  const accel::PrimitiveKind shape = input_.log.kind_of(primitive);
+  ++steps.tests;
+  steps.sphere_tests += shape == accel::PrimitiveKind::sphere ? 1 : 0;
+  steps.cone_tests += shape == accel::PrimitiveKind::cone ? 1 : 0;
+  const std::uint64_t record = lists_ ? primitive : place;
+  lane.record = {input_.layout.address(kind, record), input_.layout.record_bytes(kind, record), kind,
+                 shape == accel::PrimitiveKind::triangle ? Test::triangle : Test::quadric};
+  return true;
+}
+
+void LaneWalk::pass_over_visits(Lane& lane) {
+  while (lane.word != lane.word_end && program::visits_node(program::step_of(*lane.word))) {
+    lane.word += program::step_words(lane.word);
+  }
+}
+
 bool LaneWalk::next_record(Lane& lane, cost::StepCounts& steps) const {
   for (;;) {
-    if (lane.list != 0) {
-      const auto kind = memory::RecordKind::list;
-      const auto first = static_cast<std::uint64_t>(lane.entry - entries_);
-      lane.record = {input_.layout.address(kind, first), std::uint64_t{lane.list} * entry_bytes_, kind,
-                     Test::none};
-      lane.list = 0;
-      return true;
-    }
-    if (lane.entry != lane.entry_end) {
-      const auto kind = memory::RecordKind::primitive;
-      const auto place = static_cast<std::uint64_t>(lane.entry - entries_);
-      const std::uint32_t primitive = *lane.entry++;
-      const accel::PrimitiveKind shape = input_.log.kind_of(primitive);
-      ++steps.tests;
-      steps.sphere_tests += shape == accel::PrimitiveKind::sphere ? 1 : 0;
-      steps.cone_tests += shape == accel::PrimitiveKind::cone ? 1 : 0;
-      const std::uint64_t record = lists_ ? primitive : place;
-      lane.record = {input_.layout.address(kind, record), input_.layout.record_bytes(kind, record), kind,
-                     shape == accel::PrimitiveKind::triangle ? Test::triangle : Test::quadric};
+    if (next_of_leaf(lane, steps)) {
       return true;
     }
     if (lane.word == lane.word_end) {
@@ -75,8 +101,7 @@ bool LaneWalk::next_record(Lane& lane, cost::StepCounts& steps) const {
     switch (program::step_of(*lane.word)) {
       case program::Step::branch:
         ++lane.word;
-        ++steps.branches;
-        if (node_record(lane, operand, Test::box)) {
+        if (visit_branch(lane, operand, steps)) {
           return true;
         }
         break;
@@ -101,12 +126,7 @@ bool LaneWalk::next_record(Lane& lane, cost::StepCounts& steps) const {
         const bool whole = program::whole_visit(*lane.word);
         const std::uint32_t entries = whole ? topology_[operand].count : lane.word[1];
         lane.word += whole ? 1 : 2;
-        ++steps.leaves;
-        lane.entry = entries_ + topology_[operand].first;
-        lane.entry_end = lane.entry + entries;
-        lane.list = lists_ ? entries : 0;
-        steps.lists += lane.list != 0 ? 1 : 0;
-        if (node_record(lane, operand, Test::leaf)) {
+        if (visit_leaf(lane, operand, entries, steps)) {
           return true;
         }
         break;

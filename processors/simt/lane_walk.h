@@ -35,7 +35,8 @@ struct Lane {
   std::uint32_t list = 0;  ///< entries of a list that is still to be read
   std::uint32_t ray = 0;   ///< operand of the ray that it holds: orders rays by bounce, then kind
   std::uint32_t rays = 0;  ///< of the pixel, up to and with this one
-  walk::Origin origin{};   ///< of its records; kept where it is counted
+  const std::uint32_t* meets = nullptr;  ///< what its next ray meets (accel/bvh_meets.h), where lanes help
+  walk::Origin origin{};                 ///< of its records; kept where it is counted
 };
 
 /// A shader phase counts these steps, each with a price of its own: the kinds of ray, then the others.
@@ -53,6 +54,24 @@ class LaneWalk {
   /// Takes the lane's visits up to and with its next record, which is then lane.record; counts their steps.
   /// False when the ray has no further record.
   bool next_record(Lane& lane, cost::StepCounts& steps) const;
+
+  /// Where a timed walk decides itself what the lane visits: passes over the visits of its ray in the log.
+  static void pass_over_visits(Lane& lane);
+  /// The lane visits a branch. True if that has a record, which is then lane.record.
+  bool visit_branch(Lane& lane, std::uint32_t node, cost::StepCounts& steps) const {
+    ++steps.branches;
+    return node_record(lane, node, Test::box);
+  }
+  /// It visits a leaf and is to test so many of its primitives; as above. The list and the primitives are the
+  /// records that follow.
+  bool visit_leaf(Lane& lane, std::uint32_t node, std::uint32_t tests, cost::StepCounts& steps) const;
+  /// The next of the leaf's list and its primitives, as next_record().
+  bool next_of_leaf(Lane& lane, cost::StepCounts& steps) const;
+  /// The lane tests no further primitive of its leaf.
+  static void end_leaf(Lane& lane) {
+    lane.entry = lane.entry_end;
+    lane.list = 0;
+  }
 
   /// The first record that a visit to a node reads which tests all that the node lists.
   [[nodiscard]] Record first_record(std::uint32_t node) const;

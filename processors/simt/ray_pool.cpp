@@ -105,6 +105,9 @@ std::uint32_t SimtNode::take_group() {
   stacks_.resize(stacks_.empty() ? 0 : lanes);
   spilled_stacks_.resize(spilled_stacks_.empty() ? 0 : lanes);
   lane_treelets_.resize(lane_treelets_.empty() ? 0 : lanes);
+  if (shares()) {
+    make_room_to_share();
+  }
   return static_cast<std::uint32_t>(warps_.size() - 1);
 }
 
@@ -133,6 +136,11 @@ void SimtNode::move_lane(std::size_t from, std::size_t to) {
   }
   if (!lane_treelets_.empty()) {
     lane_treelets_[to] = lane_treelets_[from];
+  }
+  if (shares()) {
+    std::swap(shared_lanes_[from], shared_lanes_[to]);
+    std::swap(shared_rays_[from], shared_rays_[to]);
+    shared_lanes_[to].ray = to;
   }
 }
 

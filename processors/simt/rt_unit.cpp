@@ -245,8 +245,14 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   Warp& warp = warps_[lanes.warp];
   Lanes done = 0;
   for_each_lane(lanes.lanes, [&](std::uint32_t member) {
-    if (!next_record(lanes.warp, member)) {
-      done |= Lanes{1} << member;
+    if (next_record(lanes.warp, member)) {
+      return;
+    }
+    done |= Lanes{1} << member;
+    if (shares()) {
+      leave_shared(lanes.warp, member);
+      time_.move_lanes(LaneState::held, without_work(lanes.warp, member), 1);
+    } else {
       end_ray(warps_[home_of(lanes.warp, member) / shared_.input.config.simt.lanes].trace_began);
     }
   });
@@ -256,7 +262,8 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   time_.move_lanes(from, LaneState::held, count(done));
 }
 
-void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
+// Takes a lane to the first record of its ray.
+bool SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
   if (!stacks_.empty()) {
     stack(warp, number).begin_ray();
   }
@@ -266,12 +273,16 @@ void SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
   if (!lane_treelets_.empty()) {
     lane_treelet(warp, number) = no_treelet;
   }
+  return shares() ? begin_shared(warp, number) : next_record(warp, number);
 }
 
 // Takes a lane in the unit, or one that is to enter it, to its next record.
 bool SimtNode::next_record(std::uint32_t warp, std::uint32_t number) {
   if (!spilled_stacks_.empty() && read_stack(warp, number)) {
     return true;
+  }
+  if (shares()) {
+    return next_shared(warp, number);
   }
   Lane& its = lane(warp, number);
   const std::uint32_t* const visit = its.word;

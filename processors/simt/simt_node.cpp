@@ -39,6 +39,9 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
     treelets = accel::treelets_of(replay.log.topology, !accel::walks_bvh(replay.log.traversal),
                                   walk::treelet_records(replay.config.layout));
   }
+  if (rt.share != machine::RtShare::none && replay.log.order == accel::WalkOrder::treelet_first) {
+    order_treelets = accel::treelets_of(replay.log.topology, false, replay.log.treelet_records).of_node;
+  }
   if (rt.stack > 0) {
     stack_places = walk::stack_places(replay.log, replay.config, replay.layout);
     stack_size = {rt.stack, replay.config.reference_bytes() / machine::stack_entry_bytes};
@@ -61,7 +64,11 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
       prefetches_(shared.input.config.prefetch.queue),
       stacks_(shared.input.config.prefetch.stack > 0 || shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
       spilled_stacks_(shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
-      lane_treelets_(shared.treelets ? lanes_.size() : 0) {}
+      lane_treelets_(shared.treelets ? lanes_.size() : 0) {
+  if (shares()) {
+    make_room_to_share();
+  }
+}
 
 void SimtNode::settle(std::int64_t cycle) {
   Quiet quiet = Quiet::idle;
@@ -145,6 +152,9 @@ void SimtNode::step(std::int64_t cycle) {
     end_test(ending.lanes, ending.from);
   }
   ending_.clear();
+  if (shares()) {
+    help_each_other();
+  }
   if (!wishes_.empty()) {
     put_prefetches();
   }
@@ -368,7 +378,9 @@ void SimtNode::arrives(std::uint32_t number, const memory::Service& service, std
 
 std::size_t SimtNode::bytes() const {
   return sizeof(SimtNode) + warps_.size() * sizeof(Warp) + lanes_.size() * sizeof(Lane) +
-         stacks_.size() * sizeof(LaneStack) + spilled_stacks_.size() * sizeof(SpilledStack);
+         stacks_.size() * sizeof(LaneStack) +
+         shared_lanes_.size() * (sizeof(SharedLane) + sizeof(SharedRay)) +
+         spilled_stacks_.size() * sizeof(SpilledStack);
 }
 
 }  // namespace marti::processors::simt

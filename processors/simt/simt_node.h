@@ -19,6 +19,7 @@
 #include "processors/simt/prefetch_queue.h"
 #include "processors/simt/rt_unit.h"
 #include "processors/simt/sector_caches.h"
+#include "processors/simt/shared_rays.h"
 #include "processors/simt/short_stack.h"
 #include "processors/simt/warp.h"
 #include "processors/walk/behind_cache.h"
@@ -41,6 +42,7 @@ struct SimtShared {
   SectorCaches caches;
   walk::BehindCache behind;
   std::optional<accel::Treelets> treelets{};      ///< where the scheduler or prefetching rests on them
+  std::vector<std::uint32_t> order_treelets{};    ///< of each node, where lanes that help take nodes by them
   std::optional<walk::CacheCounting> counting{};  ///< where it is asked for
   std::array<std::int64_t, shader_steps> shader_cycles{};
   std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
@@ -168,7 +170,7 @@ class SimtNode {
   void begin_test(const WarpLanes& lanes, Test test, LaneState from);
   void begin_waiting_tests();
   void end_test(const WarpLanes& lanes, LaneState from);
-  void begin_ray(std::uint32_t warp, std::uint32_t number);
+  bool begin_ray(std::uint32_t warp, std::uint32_t number);
   bool next_record(std::uint32_t warp, std::uint32_t number);
   void follow(std::uint32_t warp, std::uint32_t number, std::uint32_t visit);
   void put_prefetches();
@@ -205,6 +207,20 @@ class SimtNode {
   bool read_stack(std::uint32_t warp, std::uint32_t number);
   bool move_stack(std::uint32_t warp, std::uint32_t number, const std::uint32_t* visit);
   void write_stacks();
+
+  // shared_rays.cpp: lanes that help each other.
+  [[nodiscard]] bool shares() const { return shared_.input.config.rt.share != machine::RtShare::none; }
+  // What a lane of the unit is that has no work.
+  [[nodiscard]] LaneState without_work(std::uint32_t warp, std::uint32_t number) const {
+    const bool pixel = is_group(warp) || (warps_[warp].pixels >> number & 1U) != 0;
+    return pixel ? LaneState::held : LaneState::empty;
+  }
+  void make_room_to_share();
+  bool begin_shared(std::uint32_t warp, std::uint32_t number);
+  bool next_shared(std::uint32_t warp, std::uint32_t number);
+  void leave_shared(std::uint32_t warp, std::uint32_t number);
+  void help(std::uint32_t warp);
+  void help_each_other();
 
   // Lines.
   bool look_up_line(std::uint32_t waiter, const LineRead& line);
@@ -306,6 +322,15 @@ class SimtNode {
   };
   std::vector<SpilledStack> spilled_stacks_;  // of each lane of each warp; empty with all on chip
   std::vector<Spill> spills_;                 // of this cycle
+
+  // Lanes that help each other; empty where they do not.
+  std::vector<SharedLane> shared_lanes_;  // of each lane of each warp
+  std::vector<SharedRay> shared_rays_;    // of each lane of each warp, its ray
+  struct FoundHit {
+    std::size_t ray = 0;  // of shared_rays_
+    std::uint32_t rank = 0;
+  };
+  std::vector<FoundHit> found_;  // in this cycle
 
   // Treelets.
   std::vector<std::uint32_t> lane_treelets_;  // of the record that each lane of each warp wants or has

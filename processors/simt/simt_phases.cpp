@@ -302,8 +302,7 @@ void SimtNode::begin_trace(std::uint32_t number) {
     }
   } else {
     for_each_lane(warp.picked, [&](std::uint32_t member) {
-      begin_ray(number, member);
-      if (next_record(number, member)) {
+      if (begin_ray(number, member)) {
         warp.tracing |= Lanes{1} << member;
       }
     });

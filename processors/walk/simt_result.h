@@ -37,6 +37,7 @@ struct SimtCounts {
   std::int64_t fills = 0;
   std::int64_t sorted_warps = 0;
   std::int64_t sorted_rays = 0;
+  std::int64_t helps = 0;
 
   static constexpr auto counters() {
     using C = sim::Counter<SimtCounts>;
@@ -86,7 +87,9 @@ struct SimtCounts {
         C{"fills", "1", "lines of traversal stacks read back", &SimtCounts::fills},
         C{"sorted_warps", "1", "warps that were formed of sorted rays (rt.sort)", &SimtCounts::sorted_warps},
         C{"sorted_rays", "1", "lanes of these that have a ray", &SimtCounts::sorted_rays, MergeRule::sum,
-          Better::neither}};
+          Better::neither},
+        C{"helps", "1", "entries that lanes without work took from others (rt.share)", &SimtCounts::helps,
+          MergeRule::sum, Better::neither}};
   }
 };
 static_assert(sim::declares_every_member<SimtCounts>());

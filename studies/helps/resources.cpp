@@ -129,6 +129,11 @@ void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<
   resources.push_back(more(changer, Part::nodes, "rt.warps", machine.simt.warps));
   // As many entries as a branch has children. Only a bvh has stacks; the change is refused with others.
   resources.push_back(more(changer, Part::caches, "prefetch.stack", accel::EnteredChildren::most));
+  if (machine.rt.sort == processors::machine::RaySort::none) {
+    // Where rays begin or go is not in every frame's log.
+    resources.push_back(
+        {"rt.sort", Part::nodes, changer.with({{"rt.sort", std::string("kind")}}), std::nullopt});
+  }
   if (machine.rt.stack > 0) {
     Resource stack = more(changer, Part::nodes, "rt.stack");
     stack.best = changer.with({{"rt.stack", std::int64_t{0}}});

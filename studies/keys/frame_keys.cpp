@@ -94,6 +94,7 @@ void read_for_units(sim::Config& config, FrameConfig& frame) {
     return;
   }
   render.entered = true;
+  render.meets = value("rt.share") == "warp";
   if (value("rt.order") == accel::walk_order_names.front()) {
     return;  // it is read with the machine, so that the frame is that of other nodes, too
   }

@@ -15,6 +15,15 @@ using processors::machine::NodeKind;
 
 namespace {
 
+void read_share(sim::Config& config, processors::machine::RtUnitConfig& rt) {
+  rt.share = config.choice_as<processors::machine::RtShare>("rt.share");
+  const std::string& structure = config.choice_name("structure.kind");
+  if (rt.share != processors::machine::RtShare::none && structure != "bvh") {
+    config.fail("rt.share", "must be \"none\" with structure.kind = \"" + structure +
+                                "\": only the walk of a bvh keeps nodes that another lane could take");
+  }
+}
+
 void read_stack(sim::Config& config, processors::machine::RtUnitConfig& rt) {
   rt.stack = count(config, "rt.stack");
   if (rt.stack == 0) {
@@ -65,6 +74,9 @@ void declare_simt_keys(sim::Schema& schema) {
   schema.choice("rt.coalesce", "warp", names(processors::machine::rt_coalesce_names),
                 "which lanes that want the same record share one access: none, those of a warp, or of the "
                 "whole unit");
+  schema.choice("rt.share", "none", names(processors::machine::rt_share_names),
+                "bvh: from whom a lane without work takes a node that a ray has entered; warp: the lane of "
+                "its warp in the unit with most of them");
   cycles(schema, "rt.box_cycles", 8, "cycles to test the boxes of a branch");
   cycles(schema, "rt.leaf_cycles", 4, "cycles to take in a leaf's record");
   cycles(schema, "rt.triangle_cycles", 8, "cycles to test a triangle");
@@ -123,6 +135,7 @@ void read_simt(sim::Config& config, processors::machine::MachineConfig& machine)
   rt.coalesce = config.choice_as<processors::machine::RtCoalesce>("rt.coalesce");
   if (rt.warps > 0) {
     rt.scheduler = config.choice_as<processors::machine::RtScheduler>("rt.scheduler");
+    read_share(config, rt);
     rt.box_cycles = config.integer("rt.box_cycles");
     rt.leaf_cycles = config.integer("rt.leaf_cycles");
     rt.triangle_cycles = config.integer("rt.triangle_cycles");

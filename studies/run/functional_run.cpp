@@ -44,9 +44,12 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;
   const processors::program::LogTotals totals = processors::program::totals_of(*frame.log);
-  const std::uint64_t entered = frame.log->has_entered() ? totals.branches * sizeof(std::uint32_t) : 0;
-  const std::uint64_t rays = frame.log->has_ray_words() ? totals.all_rays() * sizeof(std::uint32_t) : 0;
-  const double bytes = frames * static_cast<double>(totals.bytes + entered + rays) /
+  std::uint64_t beside = 0;
+  for (const processors::program::LogRow& row : frame.log->rows) {
+    beside +=
+        (row.entered.words.size() + row.rays.words.size() + row.meets.words.size()) * sizeof(std::uint32_t);
+  }
+  const double bytes = frames * static_cast<double>(totals.bytes + beside) /
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
                            config.render.samples * 2.0 +
                        frames * pixels * sizeof(glm::vec3);

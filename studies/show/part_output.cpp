@@ -149,6 +149,10 @@ std::string simt_lines(const run::RunResult& r) {
                    tables::grouped(r.count("simt_spills")), tables::grouped(r.count("simt_fills")),
                    r.machine.rt.stack);
   }
+  if (r.machine.rt.share != processors::machine::RtShare::none) {
+    fmt::format_to(out, "  {:<12}{} nodes that waited were taken by lanes without work\n", "sharing",
+                   tables::grouped(r.count("simt_helps")));
+  }
   if (r.machine.rt.sort != processors::machine::RaySort::none) {
     fmt::format_to(out, "  {:<12}{} warps of sorted rays, {:.1f} of {} lanes filled\n", "sorting",
                    tables::grouped(r.count("simt_sorted_warps")), number("simt_lanes_filled"),

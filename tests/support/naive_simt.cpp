@@ -16,6 +16,7 @@
 #include "processors/walk/node_caches.h"
 #include "sim/engine.h"
 #include "tests/support/naive_prefetch.h"
+#include "tests/support/naive_share.h"
 #include "tests/support/naive_simt_log.h"
 #include "tests/support/naive_tags.h"
 
@@ -74,12 +75,17 @@ struct Lane {
   std::vector<NaiveVisit> visits;
   std::vector<memory::Address> last_spills;
   std::size_t at = 0;
+  std::span<const std::uint32_t> meets;  // what the rays meet that come next
+  NaiveSharedLane shared;                // where lanes help each other
   // In the unit.
   enum class In { none, wants, reads, waits, tests, done } in = In::none;
   std::shared_ptr<Reading> access;
   Cycle came = 0;  // its record
   Cycle ends = 0;  // its test
   [[nodiscard]] const NaiveRecord& record() const { return *visits[at].record; }
+  [[nodiscard]] bool works() const {
+    return in == In::wants || in == In::reads || in == In::waits || in == In::tests;
+  }
 };
 
 struct Phase {
@@ -407,14 +413,19 @@ class NaiveSimt final : public sim::EventHandler {
         ++lane.at;
         lane.in = Lane::In::wants;
         ended[{group->entered, lane.place}] = {group, &lane};
-        if (lane.at == lane.visits.size()) {
+        if (shares() ? !next_shared(node, lane) : lane.at == lane.visits.size()) {
           lane.in = Lane::In::done;
-          count_ray(node, lane.trace_began);
+          if (!shares()) {
+            count_ray(node, lane.trace_began);
+          }
         } else {
           wishing[{group->entered, lane.place}] = &lane.visits[lane.at];
         }
       }
     });
+    if (shares()) {
+      help(node, wishing);
+    }
     for (const auto& [of, visit] : wishing) {
       for (const std::vector<NaiveRecord>& item : visit->wishes) {
         std::deque<LookUp> lines;
@@ -439,6 +450,53 @@ class NaiveSimt final : public sim::EventHandler {
         ++node.counts.spills;
       }
     }
+  }
+
+  [[nodiscard]] bool shares() const { return machine_.rt.share != RtShare::none; }
+  // The lane's next record becomes its last visit; false: it has nothing to do any more.
+  bool next_shared(Node& node, Lane& lane) const {
+    if (std::optional<NaiveVisit> visit = lane.shared.next(log_, program_)) {
+      sim::merge(node.statistics.steps, visit->steps);
+      lane.visits.push_back(std::move(*visit));
+      lane.at = lane.visits.size() - 1;
+      return true;
+    }
+    NaiveSharedRay& ray = *lane.shared.ray;
+    if (--ray.lanes == 0) {
+      count_ray(node, ray.began);
+    }
+    return false;
+  }
+  // In each warp the lowest lane without work takes the oldest entry of the one that has most.
+  void help(Node& node, std::map<std::pair<std::uint64_t, std::size_t>, const NaiveVisit*>& wishing) const {
+    for (const std::shared_ptr<Group>& group : node.unit) {
+      Lane* helper = nullptr;
+      Lane* giver = nullptr;
+      for (Lane* const lane : group ? group->lanes : std::vector<Lane*>()) {
+        if (!lane->works()) {
+          helper = helper == nullptr ? lane : helper;
+        } else if (lane->shared.entries.size() >= 2 &&
+                   (giver == nullptr || lane->shared.entries.size() > giver->shared.entries.size())) {
+          giver = lane;
+        }
+      }
+      if (helper == nullptr || giver == nullptr) {
+        continue;
+      }
+      ++node.counts.helps;
+      helper->shared = NaiveSharedLane(giver->shared.ray, giver->shared.entries.front());
+      giver->shared.entries.erase(giver->shared.entries.begin());
+      helper->visits.clear();
+      if (next_shared(node, *helper)) {
+        helper->in = Lane::In::wants;
+        wishing[{group->entered, helper->place}] = &helper->visits.back();
+      }
+    }
+    for_lanes_in_unit(node, [](const auto&, Lane& lane) {
+      if (lane.shared.ray) {
+        lane.shared.ray->best = lane.shared.ray->found;
+      }
+    });
   }
 
   static void count_ray(Node& node, Cycle began) {
@@ -475,7 +533,7 @@ class NaiveSimt final : public sim::EventHandler {
       (*free)->entered = node.entries++;
       ++node.counts.traces;
       for (Lane* const lane : (*free)->lanes) {
-        lane->in = Lane::In::wants;
+        lane->in = lane->away ? Lane::In::wants : Lane::In::done;
       }
     }
   }
@@ -628,6 +686,9 @@ class NaiveSimt final : public sim::EventHandler {
         warp.lanes[number].words = log_.pixel(warp.pixels[pixel].first, warp.pixels[pixel].second);
         if (log_.has_entered()) {
           warp.lanes[number].entered = log_.entered(warp.pixels[pixel].first, warp.pixels[pixel].second);
+        }
+        if (shares()) {
+          warp.lanes[number].meets = log_.meets(warp.pixels[pixel].first, warp.pixels[pixel].second);
         }
         lanes.push_back(number);
       }
@@ -813,7 +874,10 @@ class NaiveSimt final : public sim::EventHandler {
       lane.picked = lane.ray && (machine_.simt.reconverge == Reconverge::any || order(lane) == *least);
       lane.visits.clear();
       lane.at = 0;
-      if (lane.picked) {
+      if (lane.picked && shares()) {
+        begin_shared(node, lane);
+        any = any || lane.away;
+      } else if (lane.picked) {
         NaiveRay ray = program_.visits(ray_kind_of(*lane.ray), lane.words, lane.next, node.statistics.steps,
                                        lane.entered, stack_place(node, warp, lane));
         lane.visits = std::move(ray.visits);
@@ -842,20 +906,35 @@ class NaiveSimt final : public sim::EventHandler {
     }
   }
 
+  // The lane's ray begins with the root, if it meets that.
+  void begin_shared(Node& node, Lane& lane) const {
+    while (lane.next < lane.words.size() && NaiveSimtLog::is_visit(step_of(lane.words[lane.next]))) {
+      lane.next += step_words(&lane.words[lane.next]);
+    }
+    const auto ray = std::make_shared<NaiveSharedRay>();
+    ray->meets = lane.meets.first(lane.meets.front());
+    ray->shadow = ray_kind_of(*lane.ray) == RayKind::shadow;
+    ray->began = lane.trace_began = node.cycle;
+    lane.meets = lane.meets.subspan(ray->meets.size());
+    lane.shared = NaiveSharedLane(ray, {0, 0, 1});
+    lane.in = Lane::In::done;
+    lane.away = ray->meets.size() > 1 && next_shared(node, lane);
+    lane.at = 0;
+  }
+
   // Rays of a warp go to the pool or wait for the unit together.
   void send_away(Node& node, Warp& warp) const {
     const auto group = std::make_shared<Group>();
     group->waits = node.cycle;
     for (Lane& lane : warp.lanes) {
-      if (!lane.away) {
-        continue;
+      if (lane.away) {
+        lane.in = Lane::In::none;
       }
-      lane.in = Lane::In::none;
       lane.place = lane.number;
-      if (sorts()) {
+      if (!sorts() && (lane.away || shares())) {
+        group->lanes.push_back(&lane);  // others may help
+      } else if (lane.away) {
         node.pool.push_back(&lane);
-      } else {
-        group->lanes.push_back(&lane);
       }
     }
     if (!sorts()) {
@@ -1296,7 +1375,13 @@ class NaiveSimt final : public sim::EventHandler {
                                           : counts.lanes_cache;
     };
     for (const Lane& lane : warp.lanes) {
-      if (!lane.pixel) {
+      if (lane.in == Lane::In::wants) {
+        ++counts.lanes_scheduler;
+      } else if (lane.in == Lane::In::reads) {
+        ++waits_for(*lane.access);
+      } else if (lane.works()) {
+        ++(of_box(lane) ? counts.lanes_box : counts.lanes_primitive);
+      } else if (!lane.pixel) {
         ++counts.lanes_empty;
       } else if (warp.does == Warp::Does::phase && std::find(warp.phase.lanes.begin(), warp.phase.lanes.end(),
                                                              lane.number) != warp.phase.lanes.end()) {
@@ -1305,12 +1390,6 @@ class NaiveSimt final : public sim::EventHandler {
                                      : waits_for(warp.phase.reading));
       } else if ((lane.away && lane.in == Lane::In::none) || (lane.picked && waits_for_unit(warp))) {
         ++counts.lanes_unit;
-      } else if (lane.away && lane.in == Lane::In::wants) {
-        ++counts.lanes_scheduler;
-      } else if (lane.away && lane.in == Lane::In::reads) {
-        ++waits_for(*lane.access);
-      } else if (lane.away && (lane.in == Lane::In::waits || lane.in == Lane::In::tests)) {
-        ++(of_box(lane) ? counts.lanes_box : counts.lanes_primitive);
       } else {
         ++counts.lanes_held;
       }

@@ -189,6 +189,34 @@ class NaiveSimtLog {
     }
     return {visits, spills};
   }
+  /// The records of a visit to a node, of which so many primitives are tested, each with its own steps.
+  [[nodiscard]] std::vector<NaiveVisit> node_visit(std::uint32_t number, std::uint32_t tests) const {
+    std::vector<NaiveVisit> visits;
+    StepCounts waiting;
+    const auto take = [&](const NaiveRecord& of) {
+      waiting.lists = of.kind == memory::RecordKind::list ? 1 : 0;
+      visits.push_back({of, std::exchange(waiting, StepCounts{}), {}, 0, {}});
+    };
+    if (log_.topology.nodes[number].leaf) {
+      ++waiting.leaves;
+      leaf(number, tests, take, waiting);
+    } else {
+      ++waiting.branches;
+      take(node(number, NaiveTest::box));
+    }
+    return visits;
+  }
+  [[nodiscard]] std::uint32_t treelet_of(std::uint32_t number) const {
+    return treelets_.of_node.empty() ? 0 : treelets_.of_node[number];
+  }
+  /// What a lane wishes for that comes to another treelet.
+  [[nodiscard]] std::vector<std::vector<NaiveRecord>> wishes_for(std::uint32_t treelet) const {
+    std::vector<std::vector<NaiveRecord>> wishes;
+    if (machine_.prefetch.treelet) {
+      wish_for(treelet, wishes);
+    }
+    return wishes;
+  }
   /// Bytes of a lane's place for its stack: of as many entries as there are levels below the root, times one
   /// less than the most children of a branch.
   [[nodiscard]] std::uint64_t stack_bytes() const {

@@ -76,11 +76,15 @@ inline processors::machine::MachineConfig random_simt(Random& random,
   if (treelets && random() % 3 == 0) {
     rt.scheduler = RtScheduler::treelet;
   }
+  if (rt.warps > 0 && log.has_meets() && random() % 2 == 0) {
+    rt.share = RtShare::warp;
+  }
   if (rt.warps > 0 && machine.placement != Placement::replicated) {
-    if (log.has_entered() && random() % 2 == 0) {
+    const bool stacks = log.has_entered() && rt.share == RtShare::none;
+    if (stacks && random() % 2 == 0) {
       machine.prefetch.stack = static_cast<std::uint32_t>(pick(random, 1, 6));
     }
-    if (log.has_entered() && machine.reference_bytes() >= stack_entry_bytes && random() % 2 == 0) {
+    if (stacks && machine.reference_bytes() >= stack_entry_bytes && random() % 2 == 0) {
       rt.stack = static_cast<std::uint32_t>(pick(random, 1, 4));
     }
     machine.prefetch.treelet = treelets && random() % 2 == 0;
@@ -136,6 +140,7 @@ inline std::string describe_simt(const processors::machine::MachineConfig& machi
   value("ports", machine.simt.ports);
   value("mshrs", machine.simt.mshrs);
   value("rt.stack", machine.rt.stack);
+  choice("rt.share", rt_share_names, machine.rt.share);
   choice("rt.sort", ray_sort_names, machine.rt.sort);
   value("rt.sort_rays", machine.rt.sort_rays);
   value("rt.sort_cycles", machine.rt.sort_cycles);

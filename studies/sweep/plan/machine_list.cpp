@@ -21,6 +21,7 @@ std::size_t MachineList::enter(ReadPoint& read) {
   processors::program::RenderOptions& render = frames_[frame].config.render;
   render.entered = render.entered || read.frame.render.entered;
   render.ray_words = render.ray_words || read.frame.render.ray_words;
+  render.meets = render.meets || read.frame.render.meets;
   const auto on_frame = [&](const std::string& machine) {
     Digest digest;
     digest.add(frames_[frame].key);

@@ -43,8 +43,9 @@ std::uint64_t memory_of(const processors::program::WorkLog& log) {
                         reserved(log.topology.work) + reserved(log.quadrics) + reserved(log.texture_begin) +
                         reserved(log.rows);
   for (const processors::program::LogRow& row : log.rows) {
-    bytes += reserved(row.words) + reserved(row.begin) + reserved(row.entered) + reserved(row.entered_begin) +
-             reserved(row.rays) + reserved(row.rays_begin);
+    for (const processors::program::RowWords* words : row.all()) {
+      bytes += reserved(words->words) + reserved(words->begin);
+    }
   }
   return bytes;
 }

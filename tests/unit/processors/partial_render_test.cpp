@@ -145,9 +145,13 @@ TEST(PartialRender, PixelsOfAnyLengthAreTakenOver) {
     RowRecorder recorder;
     recorder.begin_row(2);
     recorder.begin_pixel();
-    recorder.copy(std::vector<std::uint32_t>(first, 1));
+    LogRow before;
+    before.words.assign(first, 1);
+    before.words.resize(first + 200'000, 2);
+    before.begin = {0, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first + 200'000)};
+    recorder.copy(before, 0);
     recorder.begin_pixel();
-    recorder.copy(std::vector<std::uint32_t>(200'000, 2));
+    recorder.copy(before, 1);
     LogRow row;
     recorder.end_row(row);
     ASSERT_EQ(row.words.size(), first + 200'000);

@@ -219,13 +219,12 @@ TEST(RegionWork, FollowsARayFromRegionToRegion) {
   };
   // Pixel 0: the camera ray reads the top and leaf 2, then hits in leaf 1; its shadow ray ends in leaf 2.
   // Pixel 1 is left out by a step of 2; pixel 2 sees only the top.
-  log.rows = {{{ray(RayKind::camera, 0), make_word(Step::branch, 0), make_word(Step::leaf, 2),
-                make_word(Step::leaf, 1), make_word(Step::shade, 0), ray(RayKind::shadow, 1),
-                make_word(Step::branch, 0), make_word(Step::leaf, 2), make_word(Step::light, 0),
-                ray(RayKind::camera, 0), make_word(Step::leaf, 1), ray(RayKind::camera, 0),
-                make_word(Step::branch, 0)},
-               {0, 9, 11, 13},
-               {},
+  log.rows = {{{{ray(RayKind::camera, 0), make_word(Step::branch, 0), make_word(Step::leaf, 2),
+                 make_word(Step::leaf, 1), make_word(Step::shade, 0), ray(RayKind::shadow, 1),
+                 make_word(Step::branch, 0), make_word(Step::leaf, 2), make_word(Step::light, 0),
+                 ray(RayKind::camera, 0), make_word(Step::leaf, 1), ray(RayKind::camera, 0),
+                 make_word(Step::branch, 0)},
+                {0, 9, 11, 13}},
                {},
                {},
                {}}};

@@ -59,6 +59,7 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
     options.height = height;
     options.record = true;
     options.entered = options.ray_words = entered;
+    options.meets = entered && kind == "bvh";
     if (options.max_depth == program::RenderOptions{}.max_depth) {
       options.max_depth = 3;
     }

@@ -49,6 +49,15 @@ TEST(SimtKeys, RefuseWhatTheyCannotHaveWithPlaceAndWhatToSet) {
       {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_rays = 4097\n", "machine.toml:3: rt.sort_rays: "},
       {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_cycles = -1\n", "machine.toml:3: rt.sort_cycles: "},
       {"node.kind = 'simt'\nrt.sort = 'origin'\nrt.sort_rays = 64\nrt.sort_cycles = 0\n", "no UserError"},
+      {"node.kind = 'core'\nrt.share = 'warp'\n", "machine.toml:2: rt.share: "},
+      {"node.kind = 'simt'\nrt.share = 'warp'\n",
+       "machine.toml:2: rt.share: must be \"none\" with structure.kind"},
+      {bvh + "rt.warps = 0\nrt.share = 'warp'\n", "machine.toml:4: rt.share: "},
+      {bvh + "rt.share = 'lanes'\n", "machine.toml:3: rt.share: "},
+      {bvh + "rt.share = 'warp'\nrt.stack = 2\n", "machine.toml:4: rt.stack: must be 0 with rt.share"},
+      {bvh + "rt.share = 'warp'\nprefetch.stack = 2\n",
+       "machine.toml:4: prefetch.stack: must be 0 with rt.share"},
+      {bvh + "rt.share = 'warp'\n", "no UserError"},
       {"node.kind = 'core'\nrt.stack = 2\n", "machine.toml:2: rt.stack: "},
       {"node.kind = 'simt'\nrt.stack = 2\n", "machine.toml:2: rt.stack: must be 0 with structure.kind"},
       {bvh + "rt.warps = 0\nrt.stack = 2\n", "machine.toml:4: rt.stack: "},
@@ -98,6 +107,10 @@ TEST(SimtKeys, AFrameHasStacksIfAnyOfItsMachinesMayUseThem) {
   ASSERT_EQ(sorted.size(), 1U);
   EXPECT_TRUE(sorted.front().config.render.ray_words);
   EXPECT_FALSE(entered.front().config.render.ray_words);
+  const auto shared = frames_of("node.kind = ['simt']\nrt.share = ['none', 'warp']\n");
+  ASSERT_EQ(shared.size(), 1U);
+  EXPECT_TRUE(shared.front().config.render.meets);
+  EXPECT_FALSE(entered.front().config.render.meets);
   EXPECT_EQ(frames_of("node.kind = ['simt']\nrt.order = ['depth_first', 'breadth_first']\n").size(), 2U);
 }
 
