@@ -28,8 +28,8 @@ struct SortedRay {
 // The rays that a warp traces, which must not wait for the unit.
 void SimtNode::put_into_pool(std::uint32_t number) {
   Warp& warp = warps_[number];
-  place(warp, LaneState::held, 0);
-  time_.move_lanes(LaneState::held, LaneState::unit, count(warp.tracing));
+  place(number, LaneState::held, 0);
+  move(number, warp.tracing, LaneState::held, LaneState::unit);
   warp.does = Does::traces;
   warp.pooled = warp.away = static_cast<std::uint32_t>(count(warp.tracing));
   for_each_lane(warp.tracing, [&](std::uint32_t member) { pool_.push_back({number, member}); });

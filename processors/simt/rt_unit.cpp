@@ -37,9 +37,9 @@ void SimtNode::leave_and_enter() {
     warp.entered = entered_++;
     warp.wants = warp.members;
     if (is_group(number)) {
-      time_.move_lanes(LaneState::unit, LaneState::scheduler, count(warp.members));
+      move(number, warp.members, LaneState::unit, LaneState::scheduler);
     } else {
-      place(warp, LaneState::scheduler, count(warp.members));
+      place(number, LaneState::scheduler, warp.members);
     }
     in_unit_.push_back(number);
     ++time_.counts().traces;
@@ -132,7 +132,7 @@ bool SimtNode::pick_access() {
   const Record record = first.record;
   sending_ = accesses_.take();
   Access& access = accesses_[sending_];
-  access = {std::move(access.lanes), record.kind, first.origin};
+  access = {std::move(access.lanes), record.kind, first.origin, works_for(picked->warp, picked->lane)};
   access.lanes.clear();
   std::uint64_t bytes = 0;
   const auto join = [&](std::uint32_t number, Lanes candidates) {
@@ -173,11 +173,11 @@ bool SimtNode::pick_access() {
   return true;
 }
 
-// All lines of an access have been looked up; at least one is not there yet.
-void SimtNode::sent(Access& access) {
-  access.sent = true;
-  const LaneState state = access.left > 0 ? LaneState::memory : LaneState::cache;
-  time_.move_lanes(access.state, state, access.count);
+// Counts the lanes of an access as being in a state.
+void SimtNode::place_access(Access& access, LaneState state) {
+  for (const WarpLanes& part : access.lanes) {
+    move(part.warp, part.lanes, access.state, state);
+  }
   access.state = state;
 }
 
@@ -206,7 +206,7 @@ void SimtNode::begin_test(const WarpLanes& lanes, Test test, LaneState from) {
   }
   const bool box = test == Test::box || test == Test::leaf;
   const LaneState state = box ? LaneState::box : LaneState::primitive;
-  time_.move_lanes(from, state, count(lanes.lanes));
+  move(lanes.warp, lanes.lanes, from, state);
   const machine::RtUnitConfig& rt = shared_.input.config.rt;
   if ((box ? rt.box_units : rt.triangle_units) == 0) {
     const std::uint32_t running = running_.take();
@@ -258,8 +258,8 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   });
   warp.wants |= lanes.lanes & ~done;
   warp.tracing &= ~done;
-  time_.move_lanes(from, LaneState::scheduler, count(lanes.lanes & ~done));
-  time_.move_lanes(from, LaneState::held, count(done));
+  move(lanes.warp, lanes.lanes & ~done, from, LaneState::scheduler);
+  move(lanes.warp, done, from, LaneState::held);
 }
 
 // Takes a lane to the first record of its ray.

@@ -20,6 +20,7 @@ struct Access {
   std::vector<WarpLanes> lanes;
   memory::RecordKind kind = memory::RecordKind::node;
   walk::Origin origin{};        ///< of the lane that decided
+  std::size_t lane = 0;         ///< where lists of all lanes have the one whose ray that is
   std::uint32_t next_unit = 0;  ///< lines from here to last_unit are still to be looked up
   std::uint32_t last_unit = 0;
   bool sent = false;                       ///< all were

@@ -149,7 +149,7 @@ void SimtNode::help(std::uint32_t number) {
   if (next_shared(number, helper)) {
     warp.tracing |= Lanes{1} << helper;
     warp.wants |= Lanes{1} << helper;
-    time_.move_lanes(without_work(number, helper), LaneState::scheduler, 1);
+    move(number, Lanes{1} << helper, without_work(number, helper), LaneState::scheduler);
   } else {
     leave_shared(number, helper);
   }

@@ -68,6 +68,22 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
   if (shares()) {
     make_room_to_share();
   }
+  if (shared.input.observer != nullptr && shared.input.observer->hears_lanes()) {
+    lane_since_.resize(lanes_.size());
+  }
+}
+
+// Tells what lanes have done that leave a state.
+void SimtNode::tell_of_lanes(std::uint32_t warp, Lanes lanes, LaneState from) {
+  for_each_lane(lanes, [&](std::uint32_t member) {
+    const std::int64_t since = std::exchange(lane_since_[home_of(warp, member)], cycle_);
+    if (since != cycle_ && from != LaneState::held && from != LaneState::empty) {
+      const bool working =
+          from == LaneState::shading || from == LaneState::box || from == LaneState::primitive;
+      shared_.input.observer->lane_spent(working, shared_.input.config.clock.cycles(cycle_ - since),
+                                         pixel_at(works_for(warp, member)));
+    }
+  });
 }
 
 void SimtNode::settle(std::int64_t cycle) {
@@ -209,10 +225,12 @@ void SimtNode::look_up(std::int64_t cycle) {
     const bool retried = full_from_ != no_cycle && sending_ == no_access;
     if (!retried && (sending_ != no_access || pick_access())) {
       Access& access = accesses_[sending_];
-      blocked = !look_up_line(sending_, {access.next_unit, access.kind, access.origin});
+      blocked = !look_up_line(sending_, {access.next_unit, access.kind, access.origin, access.lane});
       if (!blocked && access.next_unit++ == access.last_unit) {
         sending_ = no_access;
-        sent(access);
+        // At least one is not there yet.
+        access.sent = true;
+        place_access(access, access.left > 0 ? LaneState::memory : LaneState::cache);
       }
     } else if (!readers_.empty()) {
       const std::uint32_t number = readers_.front();
@@ -255,6 +273,9 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
       full_from_ = no_cycle;
     }
     prefetches_.look_up(key, hit, joined);
+    if (!hit && !lane_since_.empty()) {
+      shared_.input.observer->missed(number_, 1, pixel_at(line.lane));
+    }
   };
   if (const std::optional<std::uint32_t> under_way = registers_.find(key)) {
     (void)shared_.caches.access(number_, line.kind, line.unit);
@@ -298,7 +319,7 @@ void SimtNode::look_up_prefetch() {
   if (shared_.counting) {
     shared_.counting->bring_in(number_, static_cast<std::size_t>(line.key >> 32U), line.unit);
   }
-  (void)ask_for_line(line.key, {line.unit, line.kind, {}}, true);
+  (void)ask_for_line(line.key, {line.unit, line.kind}, true);
 }
 
 // Takes a register for a line that the cache has not held until now, and asks for it behind the cache.
@@ -358,8 +379,7 @@ void SimtNode::line_there(std::uint32_t waiter, bool left) {
   if (access.pending == 0) {
     completed_.push_back(waiter);
   } else if (left && access.left == 0) {
-    time_.move_lanes(access.state, LaneState::cache, access.count);
-    access.state = LaneState::cache;
+    place_access(access, LaneState::cache);
   }
 }
 

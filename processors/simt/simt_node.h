@@ -151,7 +151,7 @@ class SimtNode {
   void go_on(std::uint32_t warp);
   void write_out();
   void give_slots();
-  void place(Warp& warp, LaneState state, std::int64_t lanes);
+  void place(std::uint32_t warp, LaneState state, Lanes lanes);
   void end_ray(std::int64_t began);
 
   // rt_unit.cpp: warps in the unit.
@@ -165,7 +165,7 @@ class SimtNode {
   [[nodiscard]] std::optional<Picked> pick_lane();
   [[nodiscard]] std::optional<std::uint32_t> pick_warp() const;
   [[nodiscard]] std::optional<Picked> pick_by_treelet();
-  void sent(Access& access);
+  void place_access(Access& access, LaneState state);
   void complete(std::uint32_t number);
   void begin_test(const WarpLanes& lanes, Test test, LaneState from);
   void begin_waiting_tests();
@@ -221,6 +221,28 @@ class SimtNode {
   void leave_shared(std::uint32_t warp, std::uint32_t number);
   void help(std::uint32_t warp);
   void help_each_other();
+
+  // Counts lanes of a warp, or of a group, as being in another state.
+  void move(std::uint32_t warp, Lanes lanes, LaneState from, LaneState to) {
+    time_.move_lanes(from, to, count(lanes));
+    if (!lane_since_.empty()) {
+      tell_of_lanes(warp, lanes, from);
+    }
+  }
+  void tell_of_lanes(std::uint32_t warp, Lanes lanes, LaneState from);
+  // Where lists of all lanes have the one whose ray, or pixel, a lane works for.
+  [[nodiscard]] std::size_t works_for(std::uint32_t warp, std::uint32_t number) const {
+    if (shares() && (is_group(warp) || warps_[warp].does == Does::traces)) {
+      number = static_cast<std::uint32_t>(shared_lanes_[place_of(warp, number)].ray %
+                                          shared_.input.config.simt.lanes);
+    }
+    return home_of(warp, number);
+  }
+  [[nodiscard]] walk::PixelPlace pixel_at(std::size_t place) const {
+    const std::uint32_t lanes = shared_.input.config.simt.lanes;
+    const Warp& warp = warps_[place / lanes];
+    return pixel_of(warp.packet, warp.turn * lanes + static_cast<std::uint32_t>(place % lanes));
+  }
 
   // Lines.
   bool look_up_line(std::uint32_t waiter, const LineRead& line);
@@ -331,6 +353,9 @@ class SimtNode {
     std::uint32_t rank = 0;
   };
   std::vector<FoundHit> found_;  // in this cycle
+
+  // Since when each lane of each warp is in its state; empty where nobody hears of lanes.
+  std::vector<std::int64_t> lane_since_;
 
   // Treelets.
   std::vector<std::uint32_t> lane_treelets_;  // of the record that each lane of each warp wants or has

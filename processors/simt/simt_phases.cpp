@@ -43,10 +43,11 @@ void insert_in_order(Waiting& waiting, std::uint32_t warp, const CycleOf& cycle_
 
 }  // namespace
 
-// Counts `lanes` lanes of the warp as being in a state, and its others that have a pixel as held.
-void SimtNode::place(Warp& warp, LaneState state, std::int64_t lanes) {
-  time_.move_lanes(warp.state, LaneState::held, warp.state_lanes);
-  time_.move_lanes(LaneState::held, state, lanes);
+// Counts these lanes of the warp as being in a state, and its others that have a pixel as held.
+void SimtNode::place(std::uint32_t number, LaneState state, Lanes lanes) {
+  Warp& warp = warps_[number];
+  move(number, warp.state_lanes, warp.state, LaneState::held);
+  move(number, lanes, LaneState::held, state);
   warp.state = state;
   warp.state_lanes = lanes;
 }
@@ -83,7 +84,7 @@ void SimtNode::begin_shading(std::uint32_t number, Lanes members) {
       shared_.each_unit(at, bytes, [&](std::uint32_t unit) {
         if (std::none_of(warp.lines.rbegin(), warp.lines.rend(),
                          [&](const LineRead& other) { return other.unit == unit; })) {
-          warp.lines.push_back({unit, kind, lane(number, member).origin});
+          warp.lines.push_back({unit, kind, lane(number, member).origin, place_of(number, member)});
         }
       });
     };
@@ -146,8 +147,8 @@ void SimtNode::refresh_phase(std::uint32_t number) {
   } else if (warp.left > 0) {
     state = LaneState::memory;
   }
-  if (state != warp.state || count(warp.members) != warp.state_lanes) {
-    place(warp, state, count(warp.members));
+  if (state != warp.state || warp.members != warp.state_lanes) {
+    place(number, state, warp.members);
   }
 }
 
@@ -206,7 +207,7 @@ void SimtNode::advance(std::uint32_t number) {
 // The pixels that have ended in the phase are to be written.
 void SimtNode::end_shading(std::uint32_t number) {
   Warp& warp = warps_[number];
-  place(warp, LaneState::held, 0);
+  place(number, LaneState::held, 0);
   warp.does = Does::writing;
   warp.writes.clear();
   warp.next_write = 0;
@@ -314,7 +315,7 @@ void SimtNode::begin_trace(std::uint32_t number) {
         return;
       }
       warp.does = Does::waits_for_unit;
-      place(warp, LaneState::unit, count(warp.picked));
+      place(number, LaneState::unit, warp.picked);
       insert_in_order(unit_waiters_, number, [&](std::uint32_t other) { return warps_[other].trace_began; });
       return;
     }
@@ -328,6 +329,7 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
   struct RoundAccess {
     Record record;
     walk::Origin origin;
+    std::size_t lane;
   };
   Warp& warp = warps_[number];
   std::vector<RoundAccess> accesses;
@@ -346,7 +348,7 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
       if (shared != accesses.end() && shared_.input.config.rt.coalesce != machine::RtCoalesce::none) {
         shared->record.bytes = std::max(shared->record.bytes, record.bytes);
       } else {
-        accesses.push_back({record, lane(number, member).origin});
+        accesses.push_back({record, lane(number, member).origin, place_of(number, member)});
       }
       ++time_.counts().records;
       time_.counts().rays += (warp.tracing & bit) == 0 ? 1 : 0;
@@ -365,7 +367,7 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
   warp.lines.clear();
   for (const RoundAccess& access : accesses) {
     shared_.each_unit(access.record.at, access.record.bytes, [&](std::uint32_t unit) {
-      warp.lines.push_back({unit, access.record.kind, access.origin});
+      warp.lines.push_back({unit, access.record.kind, access.origin, access.lane});
     });
   }
   time_.counts().accesses += static_cast<std::int64_t>(accesses.size());

@@ -40,6 +40,7 @@ struct LineRead {
   std::uint32_t unit = 0;  ///< address divided by MachineConfig::reference_bytes()
   memory::RecordKind kind = memory::RecordKind::node;
   walk::Origin origin{};  ///< of the first lane that reads it
+  std::size_t lane = 0;   ///< where lists of all lanes have that
 };
 
 /// Of pixels, or of a line of a lane's stack.
@@ -91,8 +92,8 @@ struct Warp {
   std::vector<Write> writes;
   std::size_t next_write = 0;
 
-  LaneState state = LaneState::held;  ///< of `state_lanes` lanes, which are counted as such; others are held
-  std::int64_t state_lanes = 0;
+  LaneState state = LaneState::held;  ///< of `state_lanes`, which are counted as such; others are held
+  Lanes state_lanes = 0;
 };
 
 }  // namespace marti::processors::simt

@@ -7,6 +7,8 @@
 //     frame; pieces of no length may be left out. Nodes come in any order.
 //   - `missed` for the cache misses of a pixel, at the latest when the pixel or ray is done with.
 //   - `began_packet` when a node begins a packet that the host gave it, by schemes that have packets.
+//   - `lane_spent` by SIMT nodes, for those who hear lanes: their `spent` and `missed` name no pixel and are
+//     for all lanes.
 //   - `requested` by the memory system (replay_parts.h), for those who hear requests.
 //   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
 // Replay itself calls `begin` and `end`. Observing changes nothing that is simulated.
@@ -82,6 +84,10 @@ class Observer {
   virtual void began_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/, sim::Ticks /*start*/) {}
   /// What the node does from now on is for this packet, which it has begun before.
   virtual void resumed_packet(std::uint32_t /*node*/, std::uint64_t /*packet*/) {}
+  /// Whether `lane_spent` is to be called.
+  [[nodiscard]] virtual bool hears_lanes() const { return false; }
+  /// A lane has worked for a pixel for so long, or has waited. Pieces come when they end; lanes work at once.
+  virtual void lane_spent(bool /*working*/, sim::Ticks /*time*/, PixelPlace /*pixel*/) {}
   /// Whether `requested` is to be called.
   [[nodiscard]] virtual bool hears_requests() const { return false; }
   /// Called in the order of time.

@@ -295,11 +295,6 @@ RunResult run(sim::Config& config, RunOptions options) {
   config.refuse_unused();
   refuse_beyond_memory(config, result.frame_config, result.machine);
   refuse_maps_beyond_memory(config, record, result.frame_config);
-  if (record.heat_maps && result.machine.kind == processors::machine::NodeKind::simt) {
-    config.fail("record.heat_maps",
-                "a cycle of a SIMT node is for many pixels at once, and a map has one value for each; use "
-                "node.kind = \"core\"");
-  }
   if (record.critical_path) {
     sim::with_places(config, [&] { processors::path::check_critical_path(result.machine); });
   }

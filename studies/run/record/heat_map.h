@@ -14,9 +14,11 @@ namespace marti::studies::run {
 /// The three figures of a pixel. Time that belongs to no pixel (waiting for a packet, building before the
 /// frame, idling) is not counted.
 enum class Heat : std::uint8_t {
-  cycles,  ///< all time that nodes spent for it: working and waiting
+  /// All time that nodes spent for it: working and waiting. Of a SIMT node that of the lanes that worked for
+  /// it or waited with its ray, but not of those that others of their warp held up.
+  cycles,
   misses,  ///< references that missed the node's cache
-  waits,   ///< the part of `cycles` in states other than `working`
+  waits,   ///< the part of `cycles` in which nothing was computed or tested for it
 };
 inline constexpr std::size_t heats = 3;
 inline constexpr std::array<std::string_view, heats> heat_names = {"cycles", "misses", "waits"};
@@ -30,6 +32,12 @@ class HeatMap final : public processors::walk::Observer {
   void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
              processors::walk::PixelPlace pixel) override;
   void missed(std::uint32_t node, std::int64_t misses, processors::walk::PixelPlace pixel) override;
+
+  [[nodiscard]] bool hears_lanes() const override { return true; }
+  void lane_spent(bool working, sim::Ticks time, processors::walk::PixelPlace pixel) override {
+    spent(0, working ? processors::walk::NodeState::working : processors::walk::NodeState::memory, 0, time,
+          pixel);
+  }
 
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }

@@ -1,5 +1,7 @@
 #include "studies/run/record/observers.h"
 
+#include <algorithm>
+
 #include "sim/error.h"
 
 namespace marti::studies::run {
@@ -25,6 +27,17 @@ void Observers::spent(std::uint32_t node, NodeState state, sim::Ticks from, sim:
 void Observers::missed(std::uint32_t node, std::int64_t misses, PixelPlace pixel) {
   for (processors::walk::Observer* observer : observers_) {
     observer->missed(node, misses, pixel);
+  }
+}
+
+bool Observers::hears_lanes() const {
+  return std::any_of(observers_.begin(), observers_.end(),
+                     [](const auto* observer) { return observer->hears_lanes(); });
+}
+
+void Observers::lane_spent(bool working, sim::Ticks time, PixelPlace pixel) {
+  for (processors::walk::Observer* const observer : observers_) {
+    observer->lane_spent(working, time, pixel);
   }
 }
 

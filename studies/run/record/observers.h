@@ -17,6 +17,8 @@ class Observers final : public processors::walk::Observer {
   void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
              processors::walk::PixelPlace pixel) override;
   void missed(std::uint32_t node, std::int64_t misses, processors::walk::PixelPlace pixel) override;
+  [[nodiscard]] bool hears_lanes() const override;
+  void lane_spent(bool working, sim::Ticks time, processors::walk::PixelPlace pixel) override;
   void began_packet(std::uint32_t node, std::uint64_t packet, sim::Ticks start) override;
   void resumed_packet(std::uint32_t node, std::uint64_t packet) override;
   /// Throws InternalError unless the pieces of each node reached from 0 to `time` without a gap.

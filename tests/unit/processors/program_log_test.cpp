@@ -28,7 +28,7 @@ WorkLog small_log(const std::vector<std::uint32_t>& words) {
   log.lights = 1;
   log.texture_begin = {0, 4};
   const auto end = static_cast<std::uint32_t>(words.size());
-  log.rows.push_back({{words.begin(), words.end()}, {0, end}, {}, {}, {}, {}});
+  log.rows.push_back({{{words.begin(), words.end()}, {0, end}}, {}, {}, {}});
   return log;
 }
 

@@ -9,6 +9,7 @@
 
 #include "processors/program/ray_grid.h"
 #include "processors/replay/replay.h"
+#include "processors/walk/observer.h"
 #include "simt_logs.h"
 #include "simt_machines.h"
 #include "tests/support/first_difference.h"
@@ -127,6 +128,54 @@ TEST(Simt, EqualsTheNaiveOneOnRandomMachines) {
   for (const std::int64_t value :
        {prefetches.useful, prefetches.useless, prefetches.late, prefetches.dropped}) {
     EXPECT_GT(value, usual == 200 ? 20 : 0);
+  }
+}
+
+// Adds up what is told of lanes.
+class LaneListener final : public walk::Observer {
+ public:
+  void begin(const walk::ReplayInput& input) override { width_ = input.log.width; }
+  void spent(std::uint32_t, walk::NodeState, sim::Ticks, sim::Ticks, walk::PixelPlace) override {}
+  void missed(std::uint32_t, std::int64_t misses, walk::PixelPlace pixel) override {
+    ASSERT_LT(pixel.x, width_);
+    missed_ += misses;
+  }
+  [[nodiscard]] bool hears_lanes() const override { return true; }
+  void lane_spent(bool working, sim::Ticks time, walk::PixelPlace pixel) override {
+    ASSERT_LT(pixel.x, width_);
+    ASSERT_GT(time, 0);
+    (working ? worked_ : waited_) += time;
+  }
+  void expect_sums_of(const MachineConfig& machine, const MachineResult& result) const {
+    const SimtCounts counts = result.simt.counts();
+    const sim::Ticks period = machine.clock.period();
+    EXPECT_EQ(worked_, period * (counts.lanes_shading + counts.lanes_box + counts.lanes_primitive));
+    EXPECT_EQ(waited_, period * (counts.lanes_slot + counts.lanes_unit + counts.lanes_scheduler +
+                                 counts.lanes_cache + counts.lanes_memory));
+    EXPECT_EQ(missed_, result.references().all_misses());
+  }
+
+ private:
+  std::uint32_t width_ = 0;
+  sim::Ticks worked_ = 0;
+  sim::Ticks waited_ = 0;
+  std::int64_t missed_ = 0;
+};
+
+TEST(Simt, WhatLanesDoForPixelsAddsUp) {
+  const std::vector<WorkLog> logs = test::simt_logs(7, 5);
+  for (std::uint64_t seed = 1; seed <= marti::test::cases(marti::test::stride(150, 2000)); ++seed) {
+    marti::test::Random random(seed);
+    const WorkLog& log = logs[random() % logs.size()];
+    const MachineConfig machine = marti::test::random_simt(random, log);
+    SCOPED_TRACE(marti::test::describe_simt(machine));
+    LaneListener listener;
+    ReplayOptions options;
+    options.observer = &listener;
+    const MachineResult heard = replay::replay(log, machine, options);
+    listener.expect_sums_of(machine, heard);
+    ASSERT_EQ(marti::test::FirstDifference::between(heard, replay::replay(log, machine)), "");
+    ASSERT_FALSE(::testing::Test::HasFailure());
   }
 }
 
