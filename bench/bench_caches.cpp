@@ -24,12 +24,12 @@
 #include "memory/stack_distance.h"
 #include "memory/tags.h"
 #include "processors/cost/cost_model.h"
-#include "processors/passes/reference_trace.h"
 #include "processors/passes/working_set.h"
 #include "processors/program/render.h"
 #include "processors/replay/replay.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
+#include "tests/support/heard_references.h"
 
 namespace {
 
@@ -136,11 +136,11 @@ void run(bench::Report& report, std::uint32_t size, int repeats) {
       processors::program::render(scene, *primitives, *structure, options);
   const processors::machine::MachineConfig machine = machine_of();
   const memory::CacheShape shape = memory::shape_of(cache_config);
-  processors::passes::ReferenceTrace trace;
+  test::HeardReferences trace;
   const std::int64_t misses =
       processors::replay::replay(*frame.log, machine, {.observer = &trace}).references().all_misses();
   std::vector<std::uint32_t> lines;
-  trace.for_each(0, [&](const processors::passes::Reference& reference) {
+  trace.for_each(0, [&](const test::HeardReference& reference) {
     if (!reference.write) {
       lines.push_back(static_cast<std::uint32_t>(reference.address / cache_config.line));
     }

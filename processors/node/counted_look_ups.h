@@ -22,18 +22,21 @@ class CountedLookUps {
   [[nodiscard]] Caches& caches() { return caches_; }
   [[nodiscard]] const Caches& caches() const { return caches_; }
 
-  /// Looks a line up and brings a missing one in. `own`: see CacheCounting::refer.
-  static bool access(View cache, const DynamicCursor& cursor, std::uint32_t line, bool own) {
+  /// Looks a line up, of which so many bytes are wanted, and brings a missing one in. `own`: see
+  /// CacheCounting::refer.
+  static bool access(View cache, const DynamicCursor& cursor, std::uint32_t line, std::uint32_t bytes,
+                     bool own) {
     if constexpr (counted) {
-      return cache.access(cursor.kind, line, origin_of(cursor), own);
+      return cache.access(cursor.kind, line,
+                          walk::Use{origin_of(cursor), cursor.time, cursor.at, bytes, own});
     } else {
       return cache.access(cursor.kind, line);
     }
   }
   /// Looks a line up; a missing one is not brought in.
-  static bool touch(View cache, const DynamicCursor& cursor, std::uint32_t line) {
+  static bool touch(View cache, const DynamicCursor& cursor, std::uint32_t line, std::uint32_t bytes) {
     if constexpr (counted) {
-      return cache.touch(cursor.kind, line, origin_of(cursor));
+      return cache.touch(cursor.kind, line, walk::Use{origin_of(cursor), cursor.time, cursor.at, bytes});
     } else {
       return cache.touch(cursor.kind, line);
     }

@@ -269,7 +269,7 @@ class DynamicWalker {
   bool miss(std::uint32_t node, DynamicCursor& cursor, cost::NodeStatistics& statistics) {
     const std::uint32_t copy = copies_.copy_of(node);
     const auto line = static_cast<std::uint32_t>(cursor.at >> unit_shift_);
-    (void)LookUps::access(caches().view(node), cursor, line, is_own(cursor));
+    (void)LookUps::access(caches().view(node), cursor, line, part(cursor), is_own(cursor));
     ++statistics.references.misses[static_cast<std::size_t>(cursor.kind)];
     if (Caches::present) {
       note_cached(node, line);
@@ -421,8 +421,8 @@ class DynamicWalker {
       }
     }
     cursor.due = false;
-    if (local ? LookUps::access(cache, cursor, line, is_own(cursor)) : LookUps::touch(cache, cursor, line))
-        [[likely]] {
+    if (local ? LookUps::access(cache, cursor, line, part(cursor), is_own(cursor))
+              : LookUps::touch(cache, cursor, line, part(cursor))) [[likely]] {
       ++statistics.references.hits[static_cast<std::size_t>(cursor.kind)];
       spend(cursor, ticks_.hit, 1);
     } else if (!local) {

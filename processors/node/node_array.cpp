@@ -5,6 +5,7 @@
 #include <random>
 
 #include "processors/node/node_factory.h"
+#include "processors/walk/counted_caches.h"
 
 namespace marti::processors::node {
 
@@ -25,7 +26,7 @@ std::unique_ptr<NodeArray> make_node_array(const walk::ReplayInput& input, sim::
   if (input.stripped != nullptr) {
     return make_stripped_nodes(input, engine, host);
   }
-  if (input.config.count.any()) {
+  if (walk::needs_counted_caches(input)) {
     return make_counted_nodes(input, engine, host);
   }
   const bool contexts = has_context_nodes(input);

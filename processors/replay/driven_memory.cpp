@@ -1,11 +1,16 @@
 #include "processors/replay/driven_memory.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay_parts.h"
+#include "processors/walk/node_caches.h"
+#include "processors/walk/second_level.h"
 #include "sim/engine.h"
 #include "sim/key_error.h"
 
@@ -15,6 +20,81 @@ namespace {
 
 // Requests are made after the replies of an instant and before the memory's own events, as nodes make them.
 enum class DrivenEvent : std::uint8_t { freed_read, freed_write, reply, ask, memory };
+
+// The private caches of all nodes, and the lines that are on their way to them.
+class DrivenCaches {
+ public:
+  explicit DrivenCaches(const machine::MachineConfig& config)
+      : line_shift_(static_cast<unsigned>(std::countr_zero(config.cache.cache.line))),
+        hit_ticks_(config.clock.cycles(config.cache.hit_cycles)),
+        tags_(config),
+        second_level_(config),
+        lines_(config.nodes) {}
+
+  /// A line on its way, by its cache and number.
+  using Key = std::uint64_t;
+  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
+
+  /// Looks a read up that port `port` makes at `now`; counts it. Returns when its data are there; not_known
+  /// if the line is on its way: then arrives() says so. Nothing: the line has to be asked for, as `key`.
+  std::optional<sim::Ticks> read(const DrivenRequest& request, std::uint32_t port, sim::Ticks now,
+                                 cost::ReferenceCounts& counts, Key& key) {
+    const walk::AnyCaches::View view = tags_.view(request.node);
+    const auto line = static_cast<std::uint32_t>(request.address >> line_shift_);
+    key = Key{view.cache_of(request.kind)} << 32U | line;
+    std::unordered_map<Key, Coming>& coming = lines_[request.node].coming;
+    const bool held = view.access(request.kind, line);
+    const auto found = coming.find(key);
+    const bool under_way = found != coming.end() && found->second.there > now;
+    ++(held || under_way ? counts.hits : counts.misses)[static_cast<std::size_t>(request.kind)];
+    if (under_way) {
+      if (found->second.there == not_known) {
+        found->second.waiting.push_back(port);
+      }
+      return std::max(found->second.there, sim::add_ticks(now, hit_ticks_));
+    }
+    if (held) {
+      return sim::add_ticks(now, hit_ticks_);
+    }
+    forget_arrived(lines_[request.node], now);
+    if (const std::optional<sim::Ticks> hit = second_level_.hit(request.node, line)) {
+      const sim::Ticks there = sim::add_ticks(now, *hit);
+      coming[key] = {there, {}};
+      return there;
+    }
+    coming[key] = {};
+    return std::nullopt;
+  }
+  /// The line that was asked for is there at `done`. Returns the ports that have waited for it.
+  std::vector<std::uint32_t> arrives(std::uint32_t node, Key key, sim::Ticks done) {
+    Coming& line = lines_[node].coming.at(key);
+    line.there = done;
+    return std::exchange(line.waiting, {});
+  }
+  [[nodiscard]] const walk::PrivateSecondLevel& second_level() const { return second_level_; }
+
+ private:
+  struct Coming {
+    sim::Ticks there = not_known;
+    std::vector<std::uint32_t> waiting{};
+  };
+  struct Lines {
+    std::unordered_map<Key, Coming> coming;
+    std::size_t most = 64;  // before those that have arrived are forgotten
+  };
+  static void forget_arrived(Lines& lines, sim::Ticks now) {
+    if (lines.coming.size() >= lines.most) {
+      std::erase_if(lines.coming, [&](const auto& line) { return line.second.there <= now; });
+      lines.most = std::max<std::size_t>(64, 2 * lines.coming.size());
+    }
+  }
+
+  unsigned line_shift_;
+  sim::Ticks hit_ticks_;
+  walk::AnyCaches tags_;
+  walk::PrivateSecondLevel second_level_;
+  std::vector<Lines> lines_;  // of each node
+};
 
 class Driver final : public memory::InterconnectClient, public sim::EventHandler {
  public:
@@ -26,8 +106,13 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
         free_reads_(config.nodes),
         writes_(config.nodes),
         came_(ports_),
+        key_(options.caches ? ports_ : 0),
+        line_bytes_(config.reference_bytes()),
         memory_(node::make_memory_system(config, {engine_, *this, class_of(DrivenEvent::reply), 0, ports_,
                                                   class_of(DrivenEvent::memory), true})) {
+    if (options.caches) {
+      caches_.emplace(config);
+    }
     for (std::uint32_t port = ports_; port-- > 0;) {
       free_reads_[port / options.outstanding].push_back(port);
     }
@@ -42,6 +127,9 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
     sim::ensure(!has_request_ && in_flight_ == 0, "a memory has not served all requests");
     result_.machine.end = end_;
     add_cluster(*memory_, end_, result_.machine);
+    if (caches_ && caches_->second_level().present()) {
+      result_.machine.l2 = caches_->second_level().result();
+    }
     result_.machine.events = engine_.events();
     return std::move(result_);
   }
@@ -74,8 +162,13 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
   }
 
   void read_done(std::uint32_t port, const memory::Service& service) override {
-    result_.latency.add(service.done - came_[port]);
-    free_at(service.done, DrivenEvent::freed_read, port);
+    finish_read(port, service.done);
+    if (caches_) {
+      for (const std::uint32_t waiting :
+           caches_->arrives(port / options_.outstanding, key_[port], service.done)) {
+        finish_read(waiting, service.done);
+      }
+    }
   }
   void write_done(std::uint32_t port, sim::Ticks done) override {
     free_at(done, DrivenEvent::freed_write, port / options_.outstanding);
@@ -84,6 +177,10 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
  private:
   static constexpr std::uint8_t class_of(DrivenEvent event) { return static_cast<std::uint8_t>(event); }
 
+  void finish_read(std::uint32_t port, sim::Ticks done) {
+    result_.latency.add(done - came_[port]);
+    free_at(done, DrivenEvent::freed_read, port);
+  }
   void free_at(sim::Ticks done, DrivenEvent event, std::uint32_t component) {
     end_ = std::max(end_, done);
     engine_.post(sim::Event::make(std::max(done, engine_.now()), class_of(event), component, 0));
@@ -126,7 +223,17 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
     const std::uint32_t port = free_reads_[request_.node].back();
     free_reads_[request_.node].pop_back();
     came_[port] = options_.timed ? request_.time : engine_.now();
-    memory_->read({port, request_.address, request_.bytes});
+    if (!caches_) {
+      memory_->read({port, request_.address, request_.bytes});
+      return;
+    }
+    const std::optional<sim::Ticks> there =
+        caches_->read(request_, port, engine_.now(), result_.references, key_[port]);
+    if (!there) {
+      memory_->read({port, request_.address / line_bytes_ * line_bytes_, line_bytes_});
+    } else if (*there != DrivenCaches::not_known) {
+      finish_read(port, *there);
+    }
   }
 
   DrivenOptions options_;
@@ -137,8 +244,11 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
   std::vector<std::vector<std::uint32_t>> free_reads_;  // of each node, its ports that read nothing
   std::vector<std::uint32_t> writes_;                   // of each node, under way
   std::vector<sim::Ticks> came_;                        // of the read of each port
+  std::vector<DrivenCaches::Key> key_;                  // of the line that each port asks for
+  std::uint32_t line_bytes_;
+  std::optional<DrivenCaches> caches_;
   std::unique_ptr<memory::Interconnect> memory_;
-  walk::Request request_;  // the next one
+  DrivenRequest request_;  // the next one
   bool has_request_ = false;
   bool waits_ = false;  // for a place
   std::uint64_t in_flight_ = 0;
@@ -156,6 +266,9 @@ DrivenResult drive_memory(const machine::MachineConfig& config, const DrivenOpti
   if (config.scheme == machine::Scheme::space) {
     throw sim::KeyError("machine.scheme",
                         "only a shared memory can be driven by itself, and each node has its own");
+  }
+  if (options.caches && config.cache.organisation == machine::CacheOrganisation::none) {
+    throw sim::KeyError("cache.organisation", "there are no caches that a trace could go through");
   }
   constexpr std::uint64_t most_places = std::uint64_t{1} << 24U;
   if (std::uint64_t{config.nodes} * options.outstanding > most_places) {

@@ -19,8 +19,8 @@ MachineResult replay_pipeline(const program::WorkLog& log, const machine::Machin
       return std::make_unique<flow::PipelineNodes<Caches>>(parts, std::move(caches));
     };
     const machine::MachineConfig& machine = parts.input.config;
-    return machine.count.any() ? walk::with_counted_caches(parts.input, make)
-                               : node::with_caches(machine, make);
+    return walk::needs_counted_caches(parts.input) ? walk::with_counted_caches(parts.input, make)
+                                                   : node::with_caches(machine, make);
   });
 }
 

@@ -31,8 +31,8 @@ MachineResult replay_space(const program::WorkLog& log, const machine::MachineCo
     const auto make_nodes = [&]<class Caches>(Caches caches) -> std::unique_ptr<flow::FlowNodes> {
       return std::make_unique<flow::SpaceNodes<Caches>>(parts, plan, std::move(caches));
     };
-    return own_memories.count.any() ? walk::with_counted_caches(parts.input, make_nodes)
-                                    : node::with_caches(own_memories, make_nodes);
+    return walk::needs_counted_caches(parts.input) ? walk::with_counted_caches(parts.input, make_nodes)
+                                                   : node::with_caches(own_memories, make_nodes);
   };
   MachineResult result = replay_flow(log, own_memories, options, admission_limit(config), make);
   result.copies = config.clusters;

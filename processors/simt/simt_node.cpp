@@ -31,6 +31,9 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
   for (std::size_t step = 0; step < round_steps; ++step) {
     round_cycles[step] = of_round[step] / period;
   }
+  if (replay.observer != nullptr && replay.observer->hears_references()) {
+    listener = replay.observer;
+  }
   if (replay.config.count.any()) {
     counting.emplace(replay.config, walk::memory_lines(replay.config, replay.layout, nullptr));
   }
@@ -273,6 +276,12 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
       full_from_ = no_cycle;
     }
     prefetches_.look_up(key, hit, joined);
+    if (shared_.listener != nullptr) {
+      const std::uint32_t bytes = shared_.input.config.reference_bytes();
+      shared_.listener->referred({shared_.input.config.clock.cycles(cycle_), number_,
+                                  memory::Address{line.unit} << shared_.unit_shift, bytes, false},
+                                 line.kind, hit);
+    }
     if (!hit && !lane_since_.empty()) {
       shared_.input.observer->missed(number_, 1, pixel_at(line.lane));
     }

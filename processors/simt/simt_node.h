@@ -44,6 +44,7 @@ struct SimtShared {
   std::optional<accel::Treelets> treelets{};      ///< where the scheduler or prefetching rests on them
   std::vector<std::uint32_t> order_treelets{};    ///< of each node, where lanes that help take nodes by them
   std::optional<walk::CacheCounting> counting{};  ///< where it is asked for
+  walk::Observer* listener = nullptr;             ///< that hears references
   std::array<std::int64_t, shader_steps> shader_cycles{};
   std::array<std::int64_t, tests> test_cycles{};  ///< of the unit
   RoundCounts round_cycles{};

@@ -10,6 +10,7 @@
 #include "memory/record_kind.h"
 #include "processors/program/work_log.h"
 #include "sim/statistics.h"
+#include "sim/time.h"
 
 namespace marti::processors::walk {
 
@@ -35,6 +36,15 @@ struct Origin {
     ray = static_cast<std::uint16_t>(
         program::ray_operand(program::ray_kind_of(operand), bounce < most_bounces ? bounce : most_bounces));
   }
+};
+
+/// A reference, as caches that count see it.
+struct Use {
+  Origin origin{};
+  sim::Ticks time = 0;
+  memory::Address at = 0;
+  std::uint32_t bytes = 0;
+  bool own = false;  ///< see CacheCounting::refer
 };
 
 struct AttributionCounts {

@@ -1,15 +1,24 @@
-// The caches of nodes that count more than hits and misses. One class for every kind of cache, slower than
-// those of node_caches.h; hits and misses are the same.
+// The caches of nodes that count more than hits and misses, or whose references are heard. One class for
+// every kind of cache, slower than those of node_caches.h; hits and misses are the same.
 #pragma once
 
 #include <memory>
 
 #include "processors/walk/cache_counting.h"
 #include "processors/walk/node_caches.h"
+#include "processors/walk/observer.h"
 #include "processors/walk/record_places.h"
 #include "processors/walk/replay_input.h"
 
 namespace marti::processors::walk {
+
+[[nodiscard]] inline bool hears_references(const ReplayInput& input) {
+  return input.observer != nullptr && input.observer->hears_references();
+}
+/// Whether nodes have to have such caches.
+[[nodiscard]] inline bool needs_counted_caches(const ReplayInput& input) {
+  return input.config.count.any() || hears_references(input);
+}
 
 /// `Present` is false for nodes without a cache.
 template <bool Present>
@@ -26,19 +35,18 @@ class CountedCaches {
   class View {
    public:
     View(CountedCaches& caches, std::uint32_t node) : state_(*caches.state_), node_(node) {}
-    /// `own`: see CacheCounting::refer.
-    bool access(memory::RecordKind kind, std::uint32_t line, Origin origin = {}, bool own = false) const {
+    bool access(memory::RecordKind kind, std::uint32_t line, const Use& use = {}) const {
       const AnyCaches::View caches = state_.caches.view(node_);
       const bool hit = Present && caches.access(kind, line);
-      state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, hit, own);
+      refer(kind, line, use, hit);
       return hit;
     }
     /// As access(), but a line that is missing is not brought in, and counted only when it is.
-    bool touch(memory::RecordKind kind, std::uint32_t line, Origin origin) const {
+    bool touch(memory::RecordKind kind, std::uint32_t line, const Use& use) const {
       const AnyCaches::View caches = state_.caches.view(node_);
       const bool hit = Present && caches.touch(kind, line);
       if (hit) {
-        state_.counting.refer(node_, caches.cache_of(kind), kind, line, origin, true);
+        refer(kind, line, use, true);
       }
       return hit;
     }
@@ -61,6 +69,13 @@ class CountedCaches {
     }
 
    private:
+    void refer(memory::RecordKind kind, std::uint32_t line, const Use& use, bool hit) const {
+      state_.counting.refer(node_, cache_of(kind), kind, line, use.origin, hit, use.own);
+      if (state_.listener != nullptr) {
+        state_.listener->referred({use.time, node_, use.at, use.bytes, false}, kind, hit);
+      }
+    }
+
     State& state_;
     std::uint32_t node_;
   };
@@ -72,9 +87,11 @@ class CountedCaches {
   struct State {
     explicit State(const ReplayInput& input)
         : caches(input.config),
-          counting(input.config, memory_lines(input.config, input.layout, input.tree)) {}
+          counting(input.config, memory_lines(input.config, input.layout, input.tree)),
+          listener(hears_references(input) ? input.observer : nullptr) {}
     AnyCaches caches;
     CacheCounting counting;
+    Observer* listener;  // null: nobody hears of references
   };
 
   std::unique_ptr<State> state_;

@@ -302,7 +302,7 @@ class LogWalker {
 
   [[gnu::always_inline]] bool look_up(View cache, const std::uint32_t* line) const {
     if constexpr (counted) {
-      return cache.access(kind_of_label(label_of(line)), *line, Origin{});  // not reached: nothing is planned
+      return cache.access(kind_of_label(label_of(line)), *line, Use{});  // not reached: nothing is planned
     } else if constexpr (Caches::by_kind) {
       return cache.access(kind_of_label(label_of(line)), *line);
     } else {
@@ -365,9 +365,11 @@ class LogWalker {
     }
   }
 
-  static bool access(View cache, const Cursor& cursor, std::uint32_t line) {
+  bool access(View cache, const Cursor& cursor, std::uint32_t line) const {
     if constexpr (counted) {
-      return cache.access(cursor.kind, line, cursor.origin);
+      const memory::Address next = (memory::Address{line} + 1) << unit_shift_;
+      const auto bytes = static_cast<std::uint32_t>(std::min(cursor.end, next) - cursor.at);
+      return cache.access(cursor.kind, line, Use{cursor.origin, cursor.time, cursor.at, bytes});
     } else {
       return cache.access(cursor.kind, line);
     }

@@ -10,6 +10,7 @@
 //   - `lane_spent` by SIMT nodes, for those who hear lanes: their `spent` and `missed` name no pixel and are
 //     for all lanes.
 //   - `requested` by the memory system (replay_parts.h), for those who hear requests.
+//   - `referred` by the caches of nodes, for those who hear references.
 //   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
 // Replay itself calls `begin` and `end`. Observing changes nothing that is simulated.
 #pragma once
@@ -19,6 +20,7 @@
 #include <string_view>
 
 #include "memory/interconnect.h"
+#include "memory/record_kind.h"
 #include "processors/walk/replay_input.h"
 #include "sim/time.h"
 
@@ -92,6 +94,11 @@ class Observer {
   [[nodiscard]] virtual bool hears_requests() const { return false; }
   /// Called in the order of time.
   virtual void requested(const Request& /*request*/) {}
+  /// Whether `referred` is to be called: then nodes take every step record by record.
+  [[nodiscard]] virtual bool hears_references() const { return false; }
+  /// What a node reads of a record of this kind in one reference to its first-level cache, or without one;
+  /// of a SIMT node a line for all lanes that share it. Of each node in the order of time.
+  virtual void referred(const Request& /*reference*/, memory::RecordKind /*kind*/, bool /*hit*/) {}
   /// The frame took until `time`; called last.
   virtual void end(sim::Ticks /*time*/) {}
 };

@@ -372,6 +372,8 @@ void add_trace_command(CLI::App& app, TraceArguments& arguments) {
                                 "din: what nodes refer to, before their caches; others: what leaves their "
                                 "caches, in the order of time, as the simulator of this name reads it"),
               format);
+  trace->add_flag("--references", arguments.options.references,
+                  "in every format what nodes refer to, before their caches: a file of each node");
   trace->add_option("--nodes", arguments.options.nodes, "which nodes, as 0-3 or 0,2,8-9; all if not given")
       ->type_name("NODES")
       ->check([](const std::string& nodes) { return nodes.empty() ? "name at least one node" : ""; });
@@ -412,6 +414,13 @@ void add_memory_command(CLI::App& app, MemoryArguments& arguments) {
                                "reads of a node under way at a time (default: 16)")
                   ->type_name("N"),
               integer_key(1, most_outstanding));
+  command->add_flag("--caches", arguments.choices.caches,
+                    "reads go through the nodes' private caches before the memory");
+  command
+      ->add_option("--axis", arguments.choices.axes,
+                   "drives the memory for each value of a key, as marti sweep has axes; may be repeated")
+      ->type_name("KEY=VALUES")
+      ->allow_extra_args(false);
   command->add_flag("--json", arguments.choices.json, "prints the figures as JSON");
   command->callback([&] {
     sim::Config config = keys::read_config(run::run_schema(), arguments.config, arguments.assignments);

@@ -59,6 +59,13 @@ std::optional<bool> is_write(std::string_view word) {
   return std::ranges::find(writes, word) != writes.end() ? std::optional(true) : std::nullopt;
 }
 
+std::optional<memory::RecordKind> kind_named(std::string_view name) {
+  const auto found = std::ranges::find(memory::record_kind_names, name);
+  return found == memory::record_kind_names.end()
+             ? std::nullopt
+             : std::optional(static_cast<memory::RecordKind>(found - memory::record_kind_names.begin()));
+}
+
 }  // namespace
 
 RequestReader::RequestReader(const std::filesystem::path& file, const TraceDefaults& defaults)
@@ -161,7 +168,7 @@ void RequestReader::read_header() {
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const auto& [name, column] :
          {std::pair("time_ps", &time_), std::pair("node", &node_), std::pair("access", &access_),
-          std::pair("address", &address_), std::pair("bytes", &bytes_)}) {
+          std::pair("address", &address_), std::pair("bytes", &bytes_), std::pair("kind", &kind_)}) {
       if (names[i] == name) {
         *column = static_cast<int>(i);
       }
@@ -175,7 +182,7 @@ void RequestReader::read_header() {
   }
 }
 
-void RequestReader::read_csv(Request& request) const {
+void RequestReader::read_csv(processors::replay::DrivenRequest& request) const {
   const std::vector<std::string_view> cells = parts_of(text_, ',');
   const auto number = [&](int column, std::uint64_t otherwise, std::string_view what) {
     if (column < 0) {
@@ -199,12 +206,21 @@ void RequestReader::read_csv(Request& request) const {
   if (!write) {
     fail("access is neither read nor write: \"" + sim::shown(text_) + "\"");
   }
+  std::optional<memory::RecordKind> kind = memory::RecordKind::node;
+  if (kind_ >= 0 && !*write) {
+    kind = static_cast<std::size_t>(kind_) < cells.size() ? kind_named(cells[static_cast<std::size_t>(kind_)])
+                                                          : std::nullopt;
+    if (!kind) {
+      fail("kind is no kind of record: \"" + sim::shown(text_) + "\"");
+    }
+  }
   if (time > latest || bytes > most_bytes) {
     fail("the time is beyond 2^60 ps, or the request has more than 1 MiB");
   }
-  request = {static_cast<sim::Ticks>(time),
-             static_cast<std::uint32_t>(std::min<std::uint64_t>(node, 0xffffffffU)),
-             number(address_, 0, "address"), static_cast<std::uint32_t>(bytes), *write};
+  request = {
+      {static_cast<sim::Ticks>(time), static_cast<std::uint32_t>(std::min<std::uint64_t>(node, 0xffffffffU)),
+       number(address_, 0, "address"), static_cast<std::uint32_t>(bytes), *write},
+      *kind};
 }
 
 void RequestReader::read_words(Request& request) const {
@@ -291,7 +307,7 @@ void RequestReader::check(Request& request) {
   last_ = request.time;
 }
 
-bool RequestReader::next(Request& request) {
+bool RequestReader::next(processors::replay::DrivenRequest& request) {
   if (form_ == Form::gem5) {
     if (!next_packet(request)) {
       return false;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "processors/walk/observer.h"
+#include "processors/replay/driven_memory.h"
 
 namespace marti::studies::driven {
 
@@ -19,7 +19,7 @@ struct TraceDefaults {
   std::uint64_t addresses = std::uint64_t{1} << 48U;  ///< of the memory; one beyond is refused
 };
 
-/// CSV as `marti trace --format csv` writes it (columns time_ps, access, address; node and bytes may be
+/// CSV as `marti trace --format csv` writes it (columns time_ps, access, address; node, bytes and kind may be
 /// missing, others are ignored), DRAMsim3's lines "0x40 READ 12", Ramulator 2's "LD 0x40" and "ST 64", or
 /// gem5's packet traces, uncompressed. The first bytes tell which. Words may be
 /// parted by any blanks; a byte order mark and empty lines are skipped.
@@ -33,9 +33,11 @@ class RequestReader {
   [[nodiscard]] bool timed() const { return form_ != Form::load_store; }
   /// For people.
   [[nodiscard]] std::string_view form() const;
+  /// Whether requests say what kind of record they are of.
+  [[nodiscard]] bool has_kinds() const { return kind_ >= 0; }
   /// Reads the next request; false at the end of the trace. Throws the UserError "file:line: reason" for a
   /// line or packet that is no request, for times that decrease, and for values out of range.
-  [[nodiscard]] bool next(processors::walk::Request& request);
+  [[nodiscard]] bool next(processors::replay::DrivenRequest& request);
 
  private:
   enum class Form : std::uint8_t { csv, dramsim3, load_store, gem5 };
@@ -45,7 +47,7 @@ class RequestReader {
   void read_header();
   void read_gem5_header();
   [[nodiscard]] bool next_packet(processors::walk::Request& request);
-  void read_csv(processors::walk::Request& request) const;
+  void read_csv(processors::replay::DrivenRequest& request) const;
   void read_words(processors::walk::Request& request) const;
   [[nodiscard]] std::uint64_t packet_number(std::uint64_t& left);
   void check(processors::walk::Request& request);
@@ -64,6 +66,7 @@ class RequestReader {
   int access_ = -1;
   int address_ = -1;
   int bytes_ = -1;
+  int kind_ = -1;
   sim::Ticks last_ = 0;
 };
 

@@ -315,6 +315,48 @@ TEST(TraceCommand, OtherSimulatorsReadWhatLeavesTheCaches) {
   EXPECT_FALSE(fs::exists(directory.path() / "b"));
 }
 
+// What nodes refer to, before their caches, and when: of each node the counts of the run, in order, whatever
+// the machine is.
+TEST(TraceCommand, ReferencesOfAnyNodeHaveTimes) {
+  const TemporaryDirectory directory;
+  const std::string common = small_run + " --set machine.nodes=3 --set cache.size=2KiB --set cache.line=64";
+  int number = 0;
+  for (const std::string& more :
+       {std::string(), std::string(" --set node.contexts=2"), std::string(" --set machine.scheme=pipeline"),
+        std::string(" --set build.sharing=shared"),
+        std::string(" --set node.kind=simt --set structure.kind=bvh --set rt.share=warp")}) {
+    SCOPED_TRACE(more);
+    const fs::path out = directory.path() / std::to_string(number++);
+    const nlohmann::json nodes = printed_json("run " + common + more)["machine"]["per_node"];
+    for (const char* const format : {"csv", "champsim", "gem5"}) {
+      const Outcome trace =
+          marti("trace " + common + more + " --references --format " + format + " -o " + quoted(out));
+      ASSERT_EQ(trace.status, 0) << trace.output;
+    }
+    ASSERT_EQ(nodes.size(), 3U);
+    for (std::size_t node = 0; node < 3; ++node) {
+      const fs::path file = out / ("references-0000" + std::to_string(node));
+      const Asked csv = read_lines(file.string() + ".csv", ',', 2, 4, 0, 5, 10);
+      EXPECT_EQ(csv.reads,
+                nodes[node]["hits"].get<std::int64_t>() + nodes[node]["misses"].get<std::int64_t>());
+      EXPECT_TRUE(csv.in_order);
+      const std::string text = read(file.string() + ".csv");
+      EXPECT_TRUE(text.starts_with("time_ps,node,access,kind,address,bytes,hit\n"));
+      std::int64_t misses = 0;
+      for (std::size_t at = text.find(",0\n"); at != std::string::npos; at = text.find(",0\n", at + 1)) {
+        ++misses;
+      }
+      EXPECT_EQ(misses, nodes[node]["misses"]);
+      const Asked champsim = read_champsim(read(file.string() + ".champsim"));
+      EXPECT_EQ(std::tie(champsim.reads, champsim.writes, champsim.sum),
+                std::tie(csv.reads, csv.writes, csv.sum));
+      const Asked gem5 = read_gem5(read(file.string() + ".ptrc"));
+      EXPECT_EQ(std::tie(gem5.reads, gem5.writes, gem5.bytes, gem5.sum, gem5.last),
+                std::tie(csv.reads, csv.writes, csv.bytes, csv.sum, csv.last));
+    }
+  }
+}
+
 // A memory by itself reads what `marti trace` writes. Where times count, it does what it did in the run.
 TEST(MemoryCommand, ServesTracesOfAllForms) {
   const TemporaryDirectory directory;
@@ -361,6 +403,40 @@ TEST(MemoryCommand, ServesTracesOfAllForms) {
   EXPECT_EQ(text.status, 0) << text.output;
   EXPECT_TRUE(says(text, "answer ")) << text.output;
   EXPECT_TRUE(says(text, "bandwidth ")) << text.output;
+}
+
+// References through the caches of their node, whatever the memory behind them is.
+TEST(MemoryCommand, HasCachesBeforeItAndAxes) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path() / "references-00000.csv";
+  const std::string machine = small_run + " --set machine.nodes=1 --set cache.organisation=split";
+  const nlohmann::json figures = printed_json("run " + machine)["figures"]["machine"];
+  ASSERT_EQ(marti("trace " + machine + " --references --format csv -o " + quoted(directory.path())).status,
+            0);
+  const std::string memory = "memory " + shipped("marti.toml") + " " + quoted(file) +
+                             " --set machine.nodes=1 --caches --outstanding 1";
+  const nlohmann::json points = printed_json(
+      memory +
+      " --set cache.organisation=split --axis memory.access_cycles=4,9 --axis l2.sharing=none,shared");
+  ASSERT_EQ(points.size(), 4U);
+  for (const nlohmann::json& point : points) {
+    EXPECT_EQ(point["caches"]["hits"], figures["hits"]);
+    EXPECT_EQ(point["caches"]["misses"], figures["misses"]);
+    EXPECT_EQ(point["figures"]["interconnect_reads"], figures["misses"]);
+  }
+  EXPECT_EQ(points[1]["settings"], nlohmann::json({{"memory.access_cycles", "4"}, {"l2.sharing", "shared"}}));
+  EXPECT_LT(points[0]["latency"]["mean"], points[2]["latency"]["mean"]);
+  const Outcome text = marti(memory + " --axis cache.size=4KiB..16KiB*2");
+  EXPECT_EQ(text.status, 0) << text.output;
+  EXPECT_TRUE(says(text, "answer        cache.size = 16 KiB: ")) << text.output;
+  expect_refused(memory + " --axis cache.size=4KiB --axis cache.size=8KiB", "has an axis already");
+  expect_refused(memory + " --axis cache.size=", "--axis");
+  expect_refused(memory + " --set cache.organisation=none", "cache.organisation");
+  expect_refused("memory " + shipped("marti.toml") + " /dev/zero --axis cache.size=4KiB", "is no file");
+  std::ofstream(directory.path() / "plain.trace") << "LD 0\n";
+  expect_refused("memory " + shipped("marti.toml") + " " + quoted(directory.path() / "plain.trace") +
+                     " --caches --set cache.organisation=split",
+                 "the column kind");
 }
 
 TEST(MemoryCommand, SaysWhatIsWrongWithATrace) {
@@ -448,7 +524,7 @@ TEST(TraceCommand, SaysWhyItCannotAndLeavesNothing) {
   refused(small_run + " --nodes 3-16", "no node 16");
   refused(small_run + " --nodes \"\"", "at least one node");
   refused(small_run + " --format xml", "xml");
-  refused(small_run + " --set build.sharing=shared", "build.sharing");
+  refused(small_run + " --set machine.nodes=600 --references --format csv", "at most 512");
   const Outcome full =
       shell("trap '' XFSZ; ulimit -f 8; " + quoted(MARTI_PROGRAM) + " trace " + small_run + out);
   EXPECT_EQ(full.status, 2) << full.output;

@@ -10,6 +10,8 @@
 #include "processors/replay/driven_memory.h"
 #include "tests/contract/random_cases.h"
 #include "tests/support/equal_results.h"
+#include "tests/support/first_difference.h"
+#include "tests/support/heard_references.h"
 #include "tests/support/logged_samples.h"
 
 namespace marti::processors {
@@ -24,6 +26,9 @@ using namespace walk;
 namespace {
 
 using test::expect_equal;
+using test::FirstDifference;
+using test::HeardReference;
+using test::HeardReferences;
 using test::pick;
 using test::Random;
 using test::TimedCase;
@@ -323,6 +328,34 @@ TEST_P(Schemes, AnObserverIsToldAllOfTheTimeAndEveryMissAndChangesNothing) {
 
 // A shared memory that gets the requests of a frame at their times from a trace counts what it counted in the
 // frame, where the nodes made them.
+TEST_P(Schemes, WhatNodesReferToIsTold) {
+  for_random_cases("references are told", [](TimedCase& c, Random& /*random*/) {
+    HeardReferences heard;
+    c.options.observer = &heard;
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
+    for (std::uint32_t node = 0; node < result.nodes.size(); ++node) {
+      ReferenceCounts counts;
+      std::int64_t writes = 0;
+      sim::Ticks last = 0;
+      heard.for_each(node, [&](const HeardReference& reference) {
+        EXPECT_GE(reference.time, last);
+        EXPECT_GT(reference.bytes, 0U);
+        last = reference.time;
+        writes += reference.write ? 1 : 0;
+        if (!reference.write) {
+          ++(reference.hit ? counts.hits : counts.misses)[static_cast<std::size_t>(reference.kind)];
+        }
+      });
+      EXPECT_LE(last, result.end);
+      EXPECT_EQ(counts.hits, result.nodes[node].references.hits);
+      EXPECT_EQ(counts.misses, result.nodes[node].references.misses);
+      EXPECT_GE(writes, c.machine.scheme == Scheme::image ? result.nodes[node].writes : 0);
+    }
+    c.options.observer = nullptr;
+    EXPECT_EQ(FirstDifference::between(result, replay::replay(c.log, c.machine, c.options)), "");
+  });
+}
+
 TEST_P(Schemes, AMemoryDrivenByWhatItsNodesAskedForDoesWhatItDid) {
   class Listener final : public processors::walk::Observer {
    public:
@@ -341,11 +374,11 @@ TEST_P(Schemes, AMemoryDrivenByWhatItsNodesAskedForDoesWhatItDid) {
     const MachineResult result = replay::replay(c.log, c.machine, c.options);
     std::size_t at = 0;
     const replay::DrivenResult driven =
-        replay::drive_memory(c.machine, {.outstanding = 1}, [&](walk::Request& request) {
+        replay::drive_memory(c.machine, {.outstanding = 1}, [&](replay::DrivenRequest& request) {
           if (at == heard.requests.size()) {
             return false;
           }
-          request = heard.requests[at++];
+          request = {heard.requests[at++]};
           return true;
         });
     EXPECT_EQ(driven.late, 0);
@@ -360,6 +393,45 @@ TEST_P(Schemes, AMemoryDrivenByWhatItsNodesAskedForDoesWhatItDid) {
     for (std::size_t bank = 0; bank < found.banks.size(); ++bank) {
       EXPECT_EQ(found.banks[bank].accesses, result.clusters[0].banks[bank].accesses);
       EXPECT_EQ(found.banks[bank].waits.sum, result.clusters[0].banks[bank].waits.sum);
+    }
+  });
+}
+
+// With the caches of its nodes before it: driven by what they referred to, it and they do what they did.
+TEST_P(Schemes, CachesDrivenByWhatTheirNodesReferredToDoWhatTheyDid) {
+  for_random_cases("driven caches", [](TimedCase& c, Random& /*random*/) {
+    if (c.machine.clusters != 1 || c.machine.placement != Placement::shared ||
+        c.machine.ports_of_node() != 1 || c.machine.scheme == Scheme::space ||
+        c.machine.build.sharing != Sharing::given ||
+        c.machine.cache.organisation == CacheOrganisation::none) {
+      return;
+    }
+    HeardReferences heard;
+    c.options.observer = &heard;
+    const MachineResult result = replay::replay(c.log, c.machine, c.options);
+    std::vector<HeardReference> all;
+    for (std::uint32_t node = 0; node < c.machine.nodes; ++node) {
+      heard.for_each(node, [&](const HeardReference& reference) { all.push_back(reference); });
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const HeardReference& a, const HeardReference& b) { return a.time < b.time; });
+    std::size_t at = 0;
+    const replay::DrivenResult driven = replay::drive_memory(c.machine, {.outstanding = 1, .caches = true},
+                                                             [&](replay::DrivenRequest& request) {
+                                                               if (at == all.size()) {
+                                                                 return false;
+                                                               }
+                                                               request = {all[at], all[at].kind};
+                                                               ++at;
+                                                               return true;
+                                                             });
+    const ReferenceCounts references = result.references();
+    EXPECT_EQ(driven.references.hits, references.hits);
+    EXPECT_EQ(driven.references.misses, references.misses);
+    EXPECT_EQ(driven.machine.clusters[0].interconnect.reads, result.clusters[0].interconnect.reads);
+    EXPECT_EQ(driven.machine.clusters[0].interconnect.writes, result.clusters[0].interconnect.writes);
+    if (c.machine.l2.sharing == SecondLevel::private_caches) {
+      EXPECT_EQ(driven.machine.l2.counters().hits, result.l2.counters().hits);
     }
   });
 }

@@ -41,15 +41,14 @@ class ToldCaches {
   class View {
    public:
     View(ToldCaches& all, std::uint32_t node) : all_(all), node_(node), tags_(all.caches_->view(node)) {}
-    bool access(memory::RecordKind kind, std::uint32_t line, processors::walk::Origin origin = {},
-                bool /*own*/ = false) const {
+    bool access(memory::RecordKind kind, std::uint32_t line, const processors::walk::Use& use = {}) const {
       const bool hit = tags_.access(kind, line);
-      all_.counts_.refer(node_, cache_of(kind), action_of(kind, origin), line, hit,
+      all_.counts_.refer(node_, cache_of(kind), action_of(kind, use.origin), line, hit,
                          all_.own_ && memory::Address{line} * all_.line_ >= *all_.own_);
       return hit;
     }
-    bool touch(memory::RecordKind kind, std::uint32_t line, processors::walk::Origin origin) const {
-      return tags_.holds(kind, line) && access(kind, line, origin);
+    bool touch(memory::RecordKind kind, std::uint32_t line, const processors::walk::Use& use) const {
+      return tags_.holds(kind, line) && access(kind, line, use);
     }
     [[nodiscard]] std::int64_t remove(std::uint32_t line) const {
       return tags_.remove_each(

@@ -15,42 +15,55 @@ namespace marti::studies::run {
 
 namespace {
 
-using memory::Layout;
 using processors::machine::MachineConfig;
-using processors::walk::Request;
 
 // Calls use(address) for each burst that the request touches.
 template <class Use>
-void for_each_burst(const Request& request, std::uint32_t burst, const Use& use) {
+void for_each_burst(const TraceEntry& request, std::uint32_t burst, const Use& use) {
   const memory::Address end = request.address + request.bytes;
   for (memory::Address at = request.address - request.address % burst; at < end; at += burst) {
     use(at);
   }
 }
 
-std::string nothing() { return {}; }
+std::string_view kind_name(const TraceEntry& entry) {
+  return entry.kind ? memory::record_kind_names[static_cast<std::size_t>(*entry.kind)] : "stack";
+}
 
-std::string csv_head() { return "time_ps,node,access,kind,address,bytes\n"; }
+std::string nothing(bool /*references*/) { return {}; }
 
-AppendRequest append_csv(const MachineConfig& /*machine*/, const Layout& layout) {
-  return [&layout](const Request& request, std::string& file) {
-    const std::optional<memory::RecordKind> kind = layout.kind_at(request.address);
-    fmt::format_to(std::back_inserter(file), "{},{},{},{},{},{}\n", request.time, request.node,
-                   request.write ? "write" : "read",
-                   kind ? memory::record_kind_names[static_cast<std::size_t>(*kind)] : "stack",
-                   request.address, request.bytes);
+// Dinero's traditional form: label, address in hexadecimal digits, and what its readers pass over.
+AppendEntry append_din(const MachineConfig& /*machine*/) {
+  return [](const TraceEntry& request, std::string& file) {
+    fmt::format_to(std::back_inserter(file), "{} {:x} {}\n", request.write ? 1 : 0, request.address,
+                   kind_name(request));
   };
 }
 
-AppendRequest append_load_store(const MachineConfig& machine, const Layout& /*layout*/) {
-  return [burst = burst_of(machine)](const Request& request, std::string& file) {
+std::string csv_head(bool references) {
+  return references ? "time_ps,node,access,kind,address,bytes,hit\n"
+                    : "time_ps,node,access,kind,address,bytes\n";
+}
+
+AppendEntry append_csv(const MachineConfig& /*machine*/) {
+  return [](const TraceEntry& request, std::string& file) {
+    fmt::format_to(std::back_inserter(file), "{},{},{},{},{},{}{}\n", request.time, request.node,
+                   request.write ? "write" : "read", kind_name(request), request.address, request.bytes,
+                   !request.hit   ? ""
+                   : *request.hit ? ",1"
+                                  : ",0");
+  };
+}
+
+AppendEntry append_load_store(const MachineConfig& machine) {
+  return [burst = burst_of(machine)](const TraceEntry& request, std::string& file) {
     for_each_burst(request, burst, [&](memory::Address address) {
       fmt::format_to(std::back_inserter(file), "{} 0x{:x}\n", request.write ? "ST" : "LD", address);
     });
   };
 }
 
-AppendRequest append_read_write(const MachineConfig& machine, const Layout& /*layout*/) {
+AppendEntry append_read_write(const MachineConfig& machine) {
   using memory::DramField;
   if (!machine.banks.dram) {
     throw sim::UserError(
@@ -64,7 +77,7 @@ AppendRequest append_read_write(const MachineConfig& machine, const Layout& /*la
   }
   fields.insert(fields.end(), {DramField::bank_group, DramField::bank, DramField::row, DramField::column});
   return [burst = burst_of(machine), fields, mapping = memory::DramMapping(*machine.banks.dram)](
-             const Request& request, std::string& file) {
+             const TraceEntry& request, std::string& file) {
     for_each_burst(request, burst, [&](memory::Address address) {
       file += request.write ? "W " : "R ";
       for (const DramField field : fields) {
@@ -75,13 +88,14 @@ AppendRequest append_read_write(const MachineConfig& machine, const Layout& /*la
   };
 }
 
-AppendRequest append_dramsim3(const MachineConfig& machine, const Layout& /*layout*/) {
-  return [burst = burst_of(machine), period = cycle_of(machine)](const Request& request, std::string& file) {
-    for_each_burst(request, burst, [&](memory::Address address) {
-      fmt::format_to(std::back_inserter(file), "0x{:X} {} {}\n", address, request.write ? "WRITE" : "READ",
-                     request.time / period);
-    });
-  };
+AppendEntry append_dramsim3(const MachineConfig& machine) {
+  return
+      [burst = burst_of(machine), period = cycle_of(machine)](const TraceEntry& request, std::string& file) {
+        for_each_burst(request, burst, [&](memory::Address address) {
+          fmt::format_to(std::back_inserter(file), "0x{:X} {} {}\n", address,
+                         request.write ? "WRITE" : "READ", request.time / period);
+        });
+      };
 }
 
 // gem5's packet traces (src/proto/packet.proto, src/proto/protoio.cc): a magic number, then messages of
@@ -103,7 +117,7 @@ void append_message(std::string& file, const std::string& message) {
   file += message;
 }
 
-std::string gem5_head() {
+std::string gem5_head(bool /*references*/) {
   const std::string name = "marti";
   std::string header;
   append_number(header, 1U << 3U | 2U);  // obj_id, a text
@@ -115,8 +129,8 @@ std::string gem5_head() {
   return file;
 }
 
-AppendRequest append_gem5(const MachineConfig& /*machine*/, const Layout& /*layout*/) {
-  return [message = std::string()](const Request& request, std::string& file) mutable {
+AppendEntry append_gem5(const MachineConfig& /*machine*/) {
+  return [message = std::string()](const TraceEntry& request, std::string& file) mutable {
     constexpr std::uint64_t read_request = 1;   // MemCmd::ReadReq, src/mem/packet.hh
     constexpr std::uint64_t write_request = 4;  // MemCmd::WriteReq
     message.clear();
@@ -139,13 +153,13 @@ void append_word(std::string& file, std::uint64_t word) {
 // branches; two registers written and four read; two addresses written and four read. ChampSim takes address
 // 0 for none, so all addresses are moved up by `first_address`. The address of the instruction tells kinds of
 // records apart.
-AppendRequest append_champsim(const MachineConfig& /*machine*/, const Layout& layout) {
-  return [&layout](const Request& request, std::string& file) {
+AppendEntry append_champsim(const MachineConfig& /*machine*/) {
+  return [](const TraceEntry& request, std::string& file) {
     constexpr std::uint64_t first_instruction = 0x400000;
     constexpr std::uint64_t first_address = std::uint64_t{1} << 32U;
-    const std::optional<memory::RecordKind> kind = layout.kind_at(request.address);
     const std::uint64_t number =
-        2 * (kind ? static_cast<std::uint64_t>(*kind) : memory::record_kinds) + (request.write ? 1 : 0);
+        2 * (request.kind ? static_cast<std::uint64_t>(*request.kind) : memory::record_kinds) +
+        (request.write ? 1 : 0);
     append_word(file, first_instruction + 4 * number);
     append_word(file, 0);  // no branch, no registers
     for (unsigned k = 0; k < 6; ++k) {
@@ -155,12 +169,15 @@ AppendRequest append_champsim(const MachineConfig& /*machine*/, const Layout& la
 }
 
 constexpr std::array formats = {
-    RequestFormat{"csv", "requests.csv", false, csv_head, append_csv},
-    RequestFormat{"ramulator-loadstore", "requests-loadstore.trace", false, nothing, append_load_store},
-    RequestFormat{"ramulator-readwrite", "requests-readwrite.trace", false, nothing, append_read_write},
-    RequestFormat{"dramsim3", "requests-dramsim3.trace", false, nothing, append_dramsim3},
-    RequestFormat{"gem5", "requests.ptrc", false, gem5_head, append_gem5},
-    RequestFormat{"champsim", "champsim", true, nothing, append_champsim}};
+    RequestFormat{"din", "", ".din", true, nothing, append_din},
+    RequestFormat{"csv", "requests.csv", ".csv", false, csv_head, append_csv},
+    RequestFormat{"ramulator-loadstore", "requests-loadstore.trace", "-loadstore.trace", false, nothing,
+                  append_load_store},
+    RequestFormat{"ramulator-readwrite", "requests-readwrite.trace", "-readwrite.trace", false, nothing,
+                  append_read_write},
+    RequestFormat{"dramsim3", "requests-dramsim3.trace", "-dramsim3.trace", false, nothing, append_dramsim3},
+    RequestFormat{"gem5", "requests.ptrc", ".ptrc", false, gem5_head, append_gem5},
+    RequestFormat{"champsim", "", ".champsim", false, nothing, append_champsim}};
 
 }  // namespace
 

@@ -1,29 +1,39 @@
-// The forms in which other programs read what nodes ask of the memory.
+// The forms in which other programs read what nodes ask of the memory, or refer to before their caches.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "memory/layout.h"
+#include "memory/record_kind.h"
 #include "processors/machine/machine_config.h"
 #include "processors/walk/observer.h"
 
 namespace marti::studies::run {
 
-/// Appends a request to the text or bytes of a file.
-using AppendRequest = std::function<void(const processors::walk::Request&, std::string& file)>;
+/// A line of a trace: what a node asks of the memory, or a reference of its own, or a write of either.
+struct TraceEntry : processors::walk::Request {
+  std::optional<memory::RecordKind> kind{};  ///< nothing: a line of a traversal stack
+  std::optional<bool> hit{};  ///< of a reference that reads: whether a first-level cache has it
+};
+
+/// Appends an entry to the text or bytes of a file.
+using AppendEntry = std::function<void(const TraceEntry&, std::string& file)>;
 
 struct RequestFormat {
   std::string_view name;  ///< after --format
-  std::string_view file;  ///< its name; of a format with a file for each node, the extension
-  bool file_per_node;
+  /// The name of its file of requests, "requests" and an ending; "" for a file of each node. References have
+  /// a file of each node in all formats, because nodes run ahead of each other.
+  std::string_view file;
+  std::string_view ending;  ///< of the files of nodes
+  bool only_references;
   /// What a file begins with.
-  std::string (*head)();
-  /// Both must outlive what is returned. Throws UserError for a machine of which there is no such trace.
-  AppendRequest (*append)(const processors::machine::MachineConfig& machine, const memory::Layout& layout);
+  std::string (*head)(bool references);
+  /// The machine must outlive what is returned. Throws UserError if there is no such trace of it.
+  AppendEntry (*append)(const processors::machine::MachineConfig& machine);
 };
 
 /// What a request has in forms without sizes: a burst of DRAM, else what one reference of a node reads.
@@ -31,7 +41,6 @@ struct RequestFormat {
 /// The cycle in which DRAMsim3's traces count: of the DRAM, else of the banks.
 [[nodiscard]] sim::Ticks cycle_of(const processors::machine::MachineConfig& machine);
 
-/// All of them, of the traces of requests; `din` is of references (trace.h).
 [[nodiscard]] std::span<const RequestFormat> request_formats();
 
 }  // namespace marti::studies::run

@@ -15,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "processors/machine/combinations.h"
-#include "processors/passes/reference_trace.h"
 #include "processors/replay/replay.h"
 #include "processors/walk/observer.h"
 #include "sim/error.h"
@@ -42,32 +40,7 @@ namespace marti::studies::run {
 
 namespace {
 
-using processors::machine::Feature;
 using processors::machine::MachineConfig;
-
-// The format of references, and the ending of its files.
-constexpr std::string_view references = "din";
-
-void refuse_other_machines(const sim::Config& config, const MachineConfig& machine) {
-  if (machine.scheme != processors::machine::Scheme::image) {
-    config.fail(
-        "machine.scheme",
-        "only nodes of the image scheme have references that a trace can hold; --format csv and others hold "
-        "what any node asks of the memory");
-  }
-  for (const Feature feature : {Feature::contexts, Feature::prefetch, Feature::simt}) {
-    if (processors::machine::has(machine, feature)) {
-      config.fail(processors::machine::key_of(machine, feature),
-                  "a trace of references is in the order of the program, which is not that in which such a "
-                  "node refers to "
-                  "lines; --format csv and others hold what it asks of the memory");
-    }
-  }
-  if (machine.build.sharing != processors::machine::Sharing::given) {
-    config.fail("build.sharing",
-                "while the tree is built, other nodes decide what a node reads; a trace needs \"given\"");
-  }
-}
 
 struct TooLong {};
 
@@ -94,69 +67,44 @@ struct TraceFile {
 
 using TraceFiles = std::vector<std::unique_ptr<TraceFile>>;
 
-std::string file_name(std::string_view ending, std::uint32_t node) {
-  return fmt::format("node-{:05}.{}", node, ending);
-}
-
-// What the nodes refer to, before their caches.
-TraceFiles write_references(const processors::program::WorkLog& log, const MachineConfig& machine,
-                            std::span<const std::uint32_t> nodes, const std::filesystem::path& directory,
-                            std::uint64_t left) {
-  processors::passes::ReferenceTrace trace;
-  processors::replay::ReplayOptions watched;
-  watched.observer = &trace;
-  (void)processors::replay::replay(log, machine, watched);
-  TraceFiles files;
-  for (const std::uint32_t node : nodes) {
-    TraceFile& file =
-        *files.emplace_back(std::make_unique<TraceFile>(directory / file_name(references, node)));
-    std::string line;
-    trace.for_each(node, [&](const processors::passes::Reference& reference) {
-      line.clear();
-      fmt::format_to(std::back_inserter(line), "{} {:x} {}\n", reference.write ? 1 : 0, reference.address,
-                     memory::record_kind_names[static_cast<std::size_t>(reference.kind)]);
-      ++(reference.write ? file.writes : file.reads);
-      file.write(line, left);
-    });
-    file.stream.close();
+// The file that has a node's part of a trace.
+std::string file_name(const RequestFormat& format, bool references, std::uint32_t node) {
+  if (!references && !format.file.empty()) {
+    return std::string(format.file);
   }
-  return files;
+  return fmt::format("{}-{:05}{}", references && !format.only_references ? "references" : "node", node,
+                     format.ending);
 }
 
-// Writes what chosen nodes ask of the memory, while they do.
-class RequestWriter final : public processors::walk::Observer {
+// Writes what chosen nodes ask of the memory, or refer to, while they do.
+class TraceWriter final : public processors::walk::Observer {
  public:
-  RequestWriter(const RequestFormat& format, const MachineConfig& machine,
-                std::span<const std::uint32_t> nodes, const std::filesystem::path& directory,
-                std::uint64_t left)
-      : format_(format), machine_(machine), left_(left), file_of_(machine.all_nodes()) {
+  TraceWriter(const RequestFormat& format, bool references, const MachineConfig& machine,
+              std::span<const std::uint32_t> nodes, const std::filesystem::path& directory,
+              std::uint64_t left)
+      : references_(references), left_(left), file_of_(machine.all_nodes()), append_(format.append(machine)) {
     for (const std::uint32_t node : nodes) {
-      if (format.file_per_node || files_.empty()) {
-        const std::string name =
-            format.file_per_node ? file_name(format.file, node) : std::string(format.file);
-        files_.push_back(std::make_unique<TraceFile>(directory / name));
-        files_.back()->write(format.head(), left_);
+      const std::filesystem::path name = directory / file_name(format, references, node);
+      if (files_.empty() || files_.back()->file != name) {
+        files_.push_back(std::make_unique<TraceFile>(name));
+        files_.back()->write(format.head(references), left_);
       }
       file_of_[node] = files_.back().get();
     }
   }
 
-  void begin(const processors::walk::ReplayInput& input) override {
-    layout_.emplace(input.layout);
-    append_ = format_.append(machine_, *layout_);
-  }
+  void begin(const processors::walk::ReplayInput& input) override { layout_.emplace(input.layout); }
   void spent(std::uint32_t /*node*/, processors::walk::NodeState /*state*/, sim::Ticks /*from*/,
              sim::Ticks /*to*/, processors::walk::PixelPlace /*pixel*/) override {}
   [[nodiscard]] bool hears_requests() const override { return true; }
   void requested(const processors::walk::Request& request) override {
-    TraceFile* const file = file_of_[request.node];
-    if (file == nullptr) {
-      return;
+    if (request.write || !references_) {
+      write({request, layout_->kind_at(request.address), std::nullopt});
     }
-    ++(request.write ? file->writes : file->reads);
-    text_.clear();
-    append_(request, text_);
-    file->write(text_, left_);
+  }
+  [[nodiscard]] bool hears_references() const override { return references_; }
+  void referred(const processors::walk::Request& reference, memory::RecordKind kind, bool hit) override {
+    write({reference, kind, hit});
   }
 
   [[nodiscard]] TraceFiles finish() {
@@ -167,27 +115,38 @@ class RequestWriter final : public processors::walk::Observer {
   }
 
  private:
-  const RequestFormat& format_;
-  const MachineConfig& machine_;
+  void write(const TraceEntry& entry) {
+    TraceFile* const file = file_of_[entry.node];
+    if (file == nullptr) {
+      return;
+    }
+    ++(entry.write ? file->writes : file->reads);
+    text_.clear();
+    append_(entry, text_);
+    file->write(text_, left_);
+  }
+
+  bool references_;
   std::uint64_t left_;
   TraceFiles files_;
   std::vector<TraceFile*> file_of_;  // null: another node's
   std::optional<memory::Layout> layout_;
-  AppendRequest append_;
+  AppendEntry append_;
   std::string text_;
 };
 
-// Null for the format of references.
-const RequestFormat* format_named(std::string_view name) {
+const RequestFormat& format_named(std::string_view name) {
   const std::span<const RequestFormat> all = request_formats();
   const auto found = std::ranges::find(all, name, &RequestFormat::name);
-  return found == all.end() ? nullptr : &*found;
+  sim::ensure(found != all.end(), "a trace of an unknown format");
+  return *found;
 }
 
-void check_format(const RequestFormat& format, const MachineConfig& machine, std::size_t nodes) {
-  (void)format.append(machine, memory::Layout(machine.layout, {}));
+void check_format(const RequestFormat& format, bool references, const MachineConfig& machine,
+                  std::size_t nodes) {
+  (void)format.append(machine);
   constexpr std::size_t most_files = 512;
-  if (format.file_per_node && nodes > most_files) {
+  if ((references || format.file.empty()) && nodes > most_files) {
     throw sim::UserError(
         fmt::format("--format {}: writes a file for each of {} nodes at the same time; choose "
                     "at most {} with --nodes",
@@ -197,12 +156,13 @@ void check_format(const RequestFormat& format, const MachineConfig& machine, std
 
 // Whether a file has the name of a trace.
 bool is_trace(const std::string& name) {
-  const std::string_view stem = std::string_view(name).substr(0, name.rfind('.'));
-  const auto node = sim::parse_number<std::uint32_t>(stem.substr(std::min(stem.find('-') + 1, stem.size())));
-  return (node && name == file_name(references, *node)) ||
-         std::ranges::any_of(request_formats(), [&](const RequestFormat& format) {
-           return format.file_per_node ? node && name == file_name(format.file, *node) : name == format.file;
-         });
+  const std::string_view rest = std::string_view(name).substr(std::min(name.find('-') + 1, name.size()));
+  const auto node = sim::parse_number<std::uint32_t>(rest.substr(0, 5));
+  return std::ranges::any_of(request_formats(), [&](const RequestFormat& format) {
+    return name == format.file ||
+           (node && (name == file_name(format, true, *node) ||
+                     (format.file.empty() && name == file_name(format, false, *node))));
+  });
 }
 
 // A trace that no trace.json names may be the user's, or of any machine.
@@ -238,7 +198,7 @@ std::string machine_of(const sim::Config& config, const FunctionalRun& functiona
 }  // namespace
 
 std::vector<std::string> trace_formats() {
-  std::vector<std::string> names = {std::string(references)};
+  std::vector<std::string> names;
   for (const RequestFormat& format : request_formats()) {
     names.emplace_back(format.name);
   }
@@ -255,12 +215,9 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   config.refuse_unused();
   refuse_beyond_memory(config, frame, machine);
   const std::vector<std::uint32_t> nodes = parse_nodes(options.nodes, machine.all_nodes());
-  const RequestFormat* const format = format_named(options.format);
-  if (format == nullptr) {
-    refuse_other_machines(config, machine);
-  } else {
-    check_format(*format, machine, nodes.size());
-  }
+  const RequestFormat& format = format_named(options.format);
+  const bool references = options.references || format.only_references;
+  check_format(format, references, machine, nodes.size());
   tables::refuse_other_results(directory, tables::trace_name);
   const tables::FileSet earlier = tables::read_file_set(directory / tables::trace_name);
   refuse_foreign_traces(directory, earlier);
@@ -268,15 +225,11 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
 
   TraceFiles files;
   try {
-    if (format == nullptr) {
-      files = write_references(*functional.frame.log, machine, nodes, directory, options.most_bytes);
-    } else {
-      RequestWriter writer(*format, machine, nodes, directory, options.most_bytes);
-      processors::replay::ReplayOptions watched;
-      watched.observer = &writer;
-      (void)processors::replay::replay(*functional.frame.log, machine, watched);
-      files = writer.finish();
-    }
+    TraceWriter writer(format, references, machine, nodes, directory, options.most_bytes);
+    processors::replay::ReplayOptions watched;
+    watched.observer = &writer;
+    (void)processors::replay::replay(*functional.frame.log, machine, watched);
+    files = writer.finish();
   } catch (const TooLong&) {
     throw sim::UserError("the traces take more than --limit = " +
                          sim::print_size(static_cast<std::int64_t>(options.most_bytes)) +
@@ -291,9 +244,9 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   std::string text;
   for (const std::unique_ptr<TraceFile>& file : files) {
     now.files[file->file.filename().string()] = sim::sha256_of_file(file->stream.temporary());
-    text += fmt::format("wrote {}: {}, {}, {:.1f} MiB\n", file->file.string(),
-                        tables::counted(file->reads, "read"), tables::counted(file->writes, "write"),
-                        static_cast<double>(file->bytes) / (1024.0 * 1024.0));
+    text +=
+        fmt::format("wrote {}: {}, {}, {}\n", file->file.string(), tables::counted(file->reads, "read"),
+                    tables::counted(file->writes, "write"), tables::bytes(static_cast<double>(file->bytes)));
   }
   const host::SignalsHeld held;
   sim::PendingFile named(directory / tables::trace_name);

@@ -1,5 +1,4 @@
 // A second cache simulator, fed with a node's references, finds the same hits and misses.
-#include "processors/passes/reference_trace.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,13 +7,13 @@
 #include <map>
 
 #include "processors/replay/replay.h"
+#include "tests/support/heard_references.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
 
 using namespace cost;
 using namespace machine;
-using namespace passes;
 using namespace program;
 using namespace replay;
 
@@ -61,14 +60,14 @@ struct Hits {
   std::int64_t writes = 0;
 };
 
-Hits simulate(const ReferenceTrace& trace, std::uint32_t node, const NodeCacheConfig& config) {
+Hits simulate(const test::HeardReferences& trace, std::uint32_t node, const NodeCacheConfig& config) {
   std::vector<PlainCache> caches;
   for (std::size_t i = 0; i < split_caches; ++i) {
     caches.emplace_back(config.cache, config.organisation == CacheOrganisation::split ? config.split_sizes[i]
                                                                                       : config.cache.size);
   }
   Hits found;
-  trace.for_each(node, [&](const Reference& reference) {
+  trace.for_each(node, [&](const test::HeardReference& reference) {
     // Dinero reads four bytes from a multiple of four on.
     const memory::Address address = reference.address & ~memory::Address{3};
     const auto kind = static_cast<std::size_t>(reference.kind);
@@ -89,7 +88,7 @@ RC_GTEST_PROP(ReferenceTraces, GiveAnotherCacheTheSameHitsAndMisses, (std::uint6
   const WorkLog log = test::small_log(random);
   MachineConfig machine = test::random_machine(random);
   machine.cache.cache.replacement = random() % 2 == 0 ? memory::Replacement::lru : memory::Replacement::fifo;
-  ReferenceTrace trace;
+  test::HeardReferences trace;
   ReplayOptions options;
   options.observer = &trace;
   const MachineResult result = replay::replay(log, machine, options);
@@ -110,12 +109,12 @@ TEST(ReferenceTraces, AreInProgramOrderWithPixelsAtTheirEnds) {
   machine.clusters = 1;
   machine.nodes = 1;
   machine.packets = {3, 2, PacketOrder::scanline};
-  ReferenceTrace trace;
+  test::HeardReferences trace;
   ReplayOptions options;
   options.observer = &trace;
   (void)replay::replay(log, machine, options);
   std::vector<memory::Address> pixels;
-  trace.for_each(0, [&](const Reference& reference) {
+  trace.for_each(0, [&](const test::HeardReference& reference) {
     if (reference.write) {
       pixels.push_back(reference.address);
     }

@@ -146,7 +146,16 @@ class LaneListener final : public walk::Observer {
     ASSERT_GT(time, 0);
     (working ? worked_ : waited_) += time;
   }
+  [[nodiscard]] bool hears_references() const override { return true; }
+  void referred(const walk::Request& reference, memory::RecordKind /*kind*/, bool hit) override {
+    last_.resize(std::max<std::size_t>(last_.size(), reference.node + 1));
+    ASSERT_GE(reference.time, last_[reference.node]);
+    last_[reference.node] = reference.time;
+    ++(hit ? hits_ : misses_);
+  }
   void expect_sums_of(const MachineConfig& machine, const MachineResult& result) const {
+    EXPECT_EQ(hits_, result.references().all_hits());
+    EXPECT_EQ(misses_, result.references().all_misses());
     const SimtCounts counts = result.simt.counts();
     const sim::Ticks period = machine.clock.period();
     EXPECT_EQ(worked_, period * (counts.lanes_shading + counts.lanes_box + counts.lanes_primitive));
@@ -160,6 +169,9 @@ class LaneListener final : public walk::Observer {
   sim::Ticks worked_ = 0;
   sim::Ticks waited_ = 0;
   std::int64_t missed_ = 0;
+  std::int64_t hits_ = 0;
+  std::int64_t misses_ = 0;
+  std::vector<sim::Ticks> last_;  // of each node
 };
 
 TEST(Simt, WhatLanesDoForPixelsAddsUp) {

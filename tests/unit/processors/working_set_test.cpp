@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "memory/cache.h"
-#include "processors/passes/reference_trace.h"
 #include "processors/replay/replay.h"
 #include "processors/walk/node_caches.h"
 #include "sim/error.h"
+#include "tests/support/heard_references.h"
 #include "tests/support/random_machine.h"
 
 namespace marti::processors {
@@ -37,10 +37,10 @@ MachineConfig random_cached_machine(test::Random& random) {
 }
 
 // A node's lines that go to one of its caches, by a walk that stops at each reference.
-std::vector<memory::Address> lines_of(const ReferenceTrace& trace, std::uint32_t node,
+std::vector<memory::Address> lines_of(const test::HeardReferences& trace, std::uint32_t node,
                                       const NodeCacheConfig& config, std::size_t cache) {
   std::vector<memory::Address> lines;
-  trace.for_each(node, [&](const Reference& reference) {
+  trace.for_each(node, [&](const test::HeardReference& reference) {
     if (!reference.write && (config.organisation == CacheOrganisation::unified ||
                              split_cache_of[static_cast<std::size_t>(reference.kind)] == cache)) {
       lines.push_back(reference.address / config.cache.line);
@@ -53,7 +53,7 @@ RC_GTEST_PROP(WorkingSet, IsThatOfCachesSimulatedOneByOne, (std::uint64_t seed))
   test::Random random(seed);
   const WorkLog log = test::small_log(random);
   const MachineConfig machine = random_cached_machine(random);
-  ReferenceTrace trace;
+  test::HeardReferences trace;
   const MachineResult result = replay::replay(log, machine, {.observer = &trace});
   const WorkingSet set = working_set(trace);
   check_working_set(set, machine, result);
