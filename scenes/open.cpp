@@ -13,6 +13,8 @@
 #include "scenes/part_error.h"
 #include "scenes/ply.h"
 #include "scenes/procedural.h"
+#include "sim/key_error.h"
+#include "sim/sha256.h"
 #include "sim/shown.h"
 
 namespace marti::scenes {
@@ -58,6 +60,14 @@ void refuse_folder(std::string_view spec, const OpenOptions& options) {
   }
 }
 
+/// Which rays they are: the name without its folder, so that the note is the same from any directory.
+std::string note_of(const GivenRays& given, const std::filesystem::path& file) {
+  const auto any = std::count(given.any.begin(), given.any.end(), true);
+  return "Rays of " + sim::shown(file.filename().string()) + ": " + std::to_string(given.rays.size()) +
+         (any == 0 ? "" : ", " + std::to_string(any) + " of them for any hit") + "; SHA-256 " +
+         sim::sha256_of_file(file).substr(0, 16) + "...";
+}
+
 }  // namespace
 
 bool names_a_file(std::string_view spec) { return spec.ends_with('/') || !ending_of(spec).empty(); }
@@ -94,7 +104,14 @@ Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageD
   if (use != nullptr) {
     *use = scene.file_use();
   }
-  return scene.asked_for(options.file.time, name);
+  Scene pose = scene.asked_for(options.file.time, name);
+  if (!options.rays.empty()) {
+    pose.rays = sim::KeyError::reported_under("image.rays",
+                                              [&] { return read_rays(options.rays, options.file.memory); });
+    std::erase(pose.notes, no_camera_note);
+    pose.notes.push_back(note_of(pose.rays, options.rays));
+  }
+  return pose;
 }
 
 }  // namespace marti::scenes

@@ -17,6 +17,8 @@ namespace marti::scenes {
 struct OpenOptions {
   std::filesystem::path base_directory;  ///< of relative file names; empty: the current directory
   FileOptions file;                      ///< which parts of a file to use, and limits
+  /// If not empty, the file of Scene::rays (given_rays.h), by which the camera is of no use.
+  std::filesystem::path rays{};
 };
 
 /// The endings of the names of files that can be read, without the dot.
@@ -33,8 +35,9 @@ inline constexpr std::array<std::string_view, 4> file_endings = {"gltf", "glb", 
 /// Whether `spec` is the name of a file or a folder, by its ending, rather than of a procedural scene.
 [[nodiscard]] bool names_a_file(std::string_view spec);
 
-/// The pose at `options.file.time`. A time other than 0 is an error if the scene does not move. Unless `use`
-/// is null, it receives how much of its file the scene uses.
+/// The pose at `options.file.time`, with the rays of `options.rays`. A time other than 0 is an error if the
+/// scene does not move; one in the rays is a KeyError about image.rays. Unless `use` is null, it receives how
+/// much of its file the scene uses.
 [[nodiscard]] Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
                                FileUse* use = nullptr);
 

@@ -14,6 +14,7 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/camera.h"
+#include "scenes/given_rays.h"
 #include "scenes/quadric.h"
 
 namespace marti::scenes {
@@ -93,6 +94,7 @@ struct Scene {
       false;  ///< none is missing, even if there is none: a recipe's, and a file's that says so
   Camera camera;
   bool framed = false;  ///< the file has no camera; this one sees all of the scene
+  GivenRays rays;       ///< traced in the place of the camera's; without any, the camera's are
   glm::dvec3 background{0.0};
   glm::dvec3 ambient{0.0};         ///< ambient light, multiplied by a material's colour and diffuse weight
   std::uint64_t polygons = 0;      ///< polygons of the source, before triangulation

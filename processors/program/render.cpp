@@ -62,6 +62,11 @@ void check_options(const RenderOptions& options) {
                         "cutting rays off would darken a path-traced image, which ends paths by chance "
                         "instead; set image.min_weight = 0");
   }
+  if (options.integrator == Integrator::rays) {
+    sim::ensure(options.voxel_cut == 0.0 && options.samples == 1 && !options.window &&
+                    (!options.hits || options.before == nullptr),
+                "render: given rays are traced once, whole, and exactly");
+  }
   if (options.floats && options.voxel_cut > 0.0) {
     throw sim::UserError("the voxel cut averages in doubles; it cannot be rendered in floats");
   }
@@ -129,10 +134,15 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                   triangles.size() == scene.triangles.size() + scene.quadrics.size() &&
                   structure.triangles().size() == triangles.size(),
               "render: the structure was built over other primitives than the scene's");
+  if (options.integrator == Integrator::rays && scene.rays.rays.empty()) {
+    throw sim::KeyError("image.integrator",
+                        "\"rays\" needs the rays of a file (image.rays), which this command does not trace");
+  }
   Frame frame;
   frame.image.width = options.width;
   frame.image.height = options.height;
   frame.image.pixels.resize(std::size_t{options.width} * options.height);
+  frame.hits.resize(options.hits ? frame.image.pixels.size() : 0);
 
   std::optional<VoxelAverages> voxels;
   if (options.voxel_cut > 0.0) {

@@ -7,7 +7,9 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <vector>
 
+#include "accel/ray.h"
 #include "accel/walk_order.h"
 #include "processors/program/image.h"
 #include "processors/program/pixel_set.h"
@@ -70,6 +72,7 @@ struct RenderOptions {
   accel::WalkOrder order = accel::WalkOrder::depth_first;
   std::uint32_t treelet_records = 0;  ///< with WalkOrder::treelet_first: the most node records of a treelet
   bool record = false;                ///< also make the work log
+  bool hits = false;                  ///< with Integrator::rays: also say what each ray hits
   /// Of a bounding volume hierarchy without mailboxes and walked depth first: the log also has which children
   /// of each branch a ray entered, four bytes a visit.
   bool entered = false;
@@ -89,6 +92,16 @@ struct RenderOptions {
   sim::WorkMeter* meter = nullptr;
 };
 
+/// With Integrator::rays: which of `rays` rays the pixel (column, row) of the frame stands for, row by row.
+/// A frame of fewer pixels has as many of them, evenly spread. `rays` or more: none, in the pixels behind the
+/// last.
+[[nodiscard]] inline std::uint64_t given_ray(const RenderOptions& options, std::uint64_t rays,
+                                             std::uint32_t column, std::uint32_t row) {
+  const std::uint64_t pixels = std::uint64_t{options.width} * options.height;
+  const std::uint64_t pixel = std::uint64_t{row} * options.width + column;
+  return pixels < rays ? pixel * rays / pixels : pixel;
+}
+
 /// The plane through which the frame's rays go: that of its whole image.
 [[nodiscard]] scenes::ImagePlane image_plane(const scenes::Camera& camera, const RenderOptions& options);
 
@@ -104,6 +117,12 @@ struct RayCounts {
   }
 };
 
+/// What a given ray hits.
+struct GivenHit {
+  accel::Hit hit;    ///< the closest; of a ray that any hit will do for, empty
+  bool any = false;  ///< something is hit
+};
+
 struct Frame {
   Image image;
   RayCounts rays;
@@ -112,13 +131,15 @@ struct Frame {
   /// threads. It is a sum over the pixels, so that those of windows add up to that of their image.
   std::uint64_t hit_hash = 0;
   std::shared_ptr<const WorkLog> log;  ///< null unless RenderOptions::record
+  std::vector<GivenHit> hits;          ///< of each pixel, row by row, with RenderOptions::hits
   std::uint32_t voxels = 0;            ///< averaged materials made for the voxel cut
   unsigned first_voxel_level = 0;      ///< the first level that has them; 0 without any
 };
 
 /// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
 /// all of them). Throws UserError for options out of range, for a voxel cut without an octree or in floats,
-/// for path tracing with a voxel cut or a min_weight, and when recording a scene whose nodes, materials,
+/// for path tracing with a voxel cut or a min_weight, for given rays with a voxel cut, several samples or a
+/// window, or of a scene that has none, and when recording a scene whose nodes, materials,
 /// lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,

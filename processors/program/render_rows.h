@@ -72,6 +72,9 @@ void render_rows(const scenes::Scene& scene, const Structure& structure, const E
       }
       const Vec3<Real> color = tracer.trace(x, y);
       pixels[x] = {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+      if (options.hits) {
+        frame.hits[std::size_t{y} * options.width + x] = tracer.given_hit();
+      }
     }
     if constexpr (recording) {
       worker.recorder.end_row(rows[y]);

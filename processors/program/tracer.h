@@ -16,6 +16,9 @@
 // a probability that is its largest weight in the sample, at most 1, over which its weight is divided. There
 // is no ambient light, and the background shines from everywhere.
 //
+// Integrator::rays follows no light: a pixel is one of the scene's given rays, and its log the ray and its
+// visits. The image shows how far away what it hits is.
+//
 // Where it differs from Whitted's program: shadows are opaque (whatever lies before the light blocks it,
 // glass too); reflection and transmission weights are the material's, no Fresnel term; a refracting body is
 // surrounded by vacuum on the side from which its triangles wind counter-clockwise, bodies do not nest.
@@ -27,6 +30,8 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+
+#include <glm/geometric.hpp>
 
 #include "accel/octree_cut.h"
 #include "accel/ray.h"
@@ -86,6 +91,13 @@ class Tracer {
     depth_of_stack_ = 0;
     if constexpr (CutsVoxels<Structure>) {
       pixel_ = structure_.threshold() * solid_angle(x, y);
+    } else if (options_.integrator == Integrator::rays) {
+      if (const std::uint64_t ray = given_ray(options_, scene_.rays.rays.size(), column, row);
+          ray < scene_.rays.rays.size()) {
+        trace_given(ray);
+      }
+      hit_hash_ += sim::mix(pixel_hash_ ^ (std::uint64_t{y} << 32U | x));
+      return color_;
     }
     for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
       if (options_.integrator == Integrator::path) {
@@ -101,6 +113,8 @@ class Tracer {
   [[nodiscard]] const RayCounts& rays() const { return rays_; }
   /// Sum over the pixels traced so far; sums of several tracers add up to the frame's.
   [[nodiscard]] std::uint64_t hit_hash() const { return hit_hash_; }
+  /// With Integrator::rays, what the ray traced last hits.
+  [[nodiscard]] const GivenHit& given_hit() const { return given_hit_; }
 
  private:
   /// With Integrator::path, the number of the first ray of a path, the eye ray being 1, before which the path
@@ -133,6 +147,36 @@ class Tracer {
     while (depth_of_stack_ > 0) {
       const Pending ray = stack_[--depth_of_stack_];
       follow(ray);
+    }
+  }
+
+  /// Traces a given ray. White is what lies at its origin and what blocks one that any hit will do for;
+  /// grey, half as bright, what is as far away as the scene's box is long; black, no hit.
+  void trace_given(std::uint64_t number) requires(!CutsVoxels<Structure>) {
+    const scenes::GivenRay& given = scene_.rays.rays[number];
+    const bool any = scene_.rays.wants_any(number);
+    const RayKind kind = any ? RayKind::shadow : RayKind::camera;
+    recorder_.phase(Phase::ray, kind);
+    accel::Ray ray = make_ray(Vec(given.origin), Vec(given.direction));
+    ray.t_min = given.least;
+    ray.t_max = given.greatest;
+    recorder_.ray(kind, 0, ray);
+    given_hit_ = {};
+    double distance = 0.0;
+    if (any) {
+      given_hit_.any = structure_.template occluded<Real>(ray, recorder_);
+      note(given_hit_.any ? 1U : 0U, 1);
+    } else {
+      given_hit_.hit = structure_.template closest<Real>(ray, recorder_);
+      given_hit_.any = given_hit_.hit.found();
+      note(given_hit_.hit.primitive, given_hit_.any ? std::bit_cast<std::uint64_t>(given_hit_.hit.t) : 0);
+      distance = given_hit_.any ? given_hit_.hit.t * glm::length(given.direction) : 0.0;
+    }
+    ++rays_.traced[static_cast<std::size_t>(kind)];
+    if (given_hit_.any) {
+      ++rays_.hit[static_cast<std::size_t>(kind)];
+      const auto grey = static_cast<Real>(distance > 0.0 ? reach_ / (reach_ + distance) : 1.0);
+      color_ = Vec(grey, grey, grey);
     }
   }
 
@@ -435,6 +479,7 @@ class Tracer {
   RayCounts rays_;
   std::uint64_t hit_hash_ = 0;
   std::uint64_t pixel_hash_ = 0;
+  GivenHit given_hit_;  ///< with Integrator::rays
   double pixel_ = 0.0;  ///< with the voxel cut: solid angle below which a cell is taken whole
   double path_ = 0.0;   ///< with the voxel cut: from the eye to where new rays start
   /// Each ray taken off puts at most two on, once per level.

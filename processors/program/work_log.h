@@ -26,9 +26,9 @@
 namespace marti::processors::program {
 
 /// Which light the program follows: mirror images and refractions only, or also the light that surfaces
-/// scatter to each other (tracer.h).
-enum class Integrator : std::uint8_t { whitted, path };
-inline constexpr std::array<std::string_view, 2> integrator_names = {"whitted", "path"};
+/// scatter to each other; or none, and it finds what given rays hit (tracer.h).
+enum class Integrator : std::uint8_t { whitted, path, rays };
+inline constexpr std::array<std::string_view, 3> integrator_names = {"whitted", "path", "rays"};
 
 /// Kinds of ray, in the order statistics list them. Diffuse rays are those that a scattering surface sends on
 /// in a random direction; only Integrator::path has them.
@@ -38,7 +38,8 @@ inline constexpr std::array<std::string_view, ray_kinds> ray_kind_names = {"came
                                                                            "refraction", "diffuse"};
 
 /// The operand of a `ray` step. The bounce is the number of surface points between the eye and the ray's
-/// origin: 0 for camera rays, 1 for the rays that start where a camera ray ends.
+/// origin: 0 for camera rays, 1 for the rays that start where a camera ray ends. With Integrator::rays those
+/// of which the closest hit is wanted are camera rays, the others shadow rays, and all have bounce 0.
 inline constexpr unsigned ray_kind_bits = 3;
 [[nodiscard]] constexpr std::uint32_t ray_operand(RayKind kind, std::uint32_t bounce) {
   return static_cast<std::uint32_t>(kind) | bounce << ray_kind_bits;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -15,6 +17,9 @@
 
 #include "memory/layout.h"
 #include "processors/walk/node_order.h"
+#include "scenes/given_rays.h"
+#include "sim/config_errors.h"
+#include "sim/key_error.h"
 #include "sim/mapped.h"
 #include "sim/shown.h"
 #include "sim/units.h"
@@ -195,7 +200,13 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.choice(
       "image.integrator", "whitted", names(processors::program::integrator_names),
       "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
-      "scatter to each other, emissive triangles as lights, noise that more samples lessen");
+      "scatter to each other, emissive triangles as lights, noise that more samples lessen; rays: no image, "
+      "but what the rays of image.rays hit");
+  schema.text("image.rays", "",
+              "rays: a NumPy file (.npy), relative to the configuration (with --set: to the current "
+              "directory), of float32 or float64 with a row for each ray: origin (3), least distance, "
+              "direction (3), greatest distance, and, where there is a ninth column, 0 for the closest hit "
+              "or 1 for any (docs/scenes.md)");
   schema.integer("image.max_depth", 5, {1, processors::program::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
@@ -270,13 +281,22 @@ sim::MemoryBudget read_memory(const sim::Config& config, std::uint64_t processes
   return sim::MemoryBudget(static_cast<std::uint64_t>(limit), true);
 }
 
-std::filesystem::path directory_of_scene(const sim::Config& config) {
-  const std::string where = config.where("scene.source");
+std::filesystem::path directory_of(const sim::Config& config, std::string_view key) {
+  const std::string where = config.where(key);
   const bool of_the_command = where.starts_with("--set") || where.starts_with("--axis");
   return of_the_command ? std::filesystem::path() : std::filesystem::path(config.name()).parent_path();
 }
 
 namespace {
+
+void refuse_missing(const sim::Config& config, std::string_view key, const std::filesystem::path& path,
+                    std::string_view what) {
+  if (std::error_code error; !std::filesystem::exists(path, error)) {
+    config.fail(key, "there is no " + std::string(what) + " " + sim::shown(path.string()) +
+                         "; one that a configuration names is looked for beside it, one given with "
+                         "--set or --axis in the current directory");
+  }
+}
 
 std::optional<glm::dvec3> three(const sim::Config& config, std::string_view key,
                                 const char* what = "coordinates, [x, y, z]") {
@@ -340,39 +360,16 @@ scenes::ViewOptions read_view(const sim::Config& config) {
   return view;
 }
 
-}  // namespace
-
-FrameConfig read_frame(sim::Config& config) {
-  FrameConfig frame;
-  frame.scene = config.text("scene.source");
-  frame.open.base_directory = directory_of_scene(config);
-  if (scenes::names_a_file(frame.scene)) {
-    const std::filesystem::path file = frame.open.base_directory / frame.scene;
-    if (std::error_code error; !std::filesystem::exists(file, error)) {
-      config.fail("scene.source",
-                  (frame.scene.ends_with('/') ? "there is no folder " : "there is no file ") +
-                      sim::shown(file.string()) +
-                      "; one that a configuration names is looked for beside it, one given with "
-                      "--set or --axis in the current directory");
-    }
-  }
-  frame.open.file.scene = config.text("scene.scene");
+/// Where the camera is and what it sees, of which given rays know nothing.
+void read_image(sim::Config& config, FrameConfig& frame) {
   frame.open.file.camera = config.text("scene.camera");
   frame.open.file.view = read_view(config);
   frame.open.file.sky = read_sky(config);
-  frame.open.file.animation = config.text("scene.animation");
   frame.open.file.default_light = config.choice_as<scenes::DefaultLight>("scene.default_light");
-  frame.open.file.strict = config.boolean("scene.strict");
-  frame.frames.count = count(config, "frames.count");
-  frame.frames.first = count(config, "frames.first");
-  frame.frames.rate = config.real("frames.rate");
-  frame.open.file.time = frame.frames.time(0);
-  config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.width = count(config, "image.width");
   frame.render.height = count(config, "image.height");
   read_region(config, frame.render);
   frame.render.max_depth = count(config, "image.max_depth");
-  frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
   const bool path = frame.render.integrator == processors::program::Integrator::path;
   frame.open.file.emitters_light = path;
   frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
@@ -401,6 +398,66 @@ FrameConfig read_frame(sim::Config& config) {
     config.mark_unused_reason("image.voxel_cut_reference", "it has no effect with image.voxel_cut = 0",
                               "image.voxel_cut");
   }
+  config.mark_unused_reason("image.rays", "only image.integrator = \"rays\" traces rays of a file",
+                            "image.integrator");
+}
+
+/// The rays of a file take the place of the image's. Frames are rectangles, so these are cut into rows of as
+/// equal length as whole numbers allow, long enough for packets of neighbours and short enough for all of
+/// this computer's cores to have some.
+void read_rays(sim::Config& config, FrameConfig& frame) {
+  constexpr const char* key = "image.rays";
+  const std::string name = config.text(key);
+  if (name.empty()) {
+    config.fail("image.integrator", "\"rays\" traces the rays of a file; name it with image.rays");
+  }
+  frame.open.rays = directory_of(config, key) / name;
+  refuse_missing(config, key, frame.open.rays, "file");
+  const std::uint64_t rays = sim::with_places(config, [&] {
+    return sim::KeyError::reported_under(key, [&] { return scenes::count_rays(frame.open.rays); });
+  });
+  constexpr std::uint64_t least_row = 1024;
+  const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays)));
+  const std::uint64_t row = std::max(least_row, std::bit_ceil(side));
+  const std::uint64_t rows = (rays + row - 1) / row;
+  frame.render.height = static_cast<std::uint32_t>(rows);
+  frame.render.width = static_cast<std::uint32_t>((rays + rows - 1) / rows);
+  frame.render.max_depth = 1;
+  frame.render.shadows = false;
+  frame.open.file.default_light = scenes::DefaultLight::never;
+  constexpr std::string_view reason =
+      "the rays of image.rays begin and end where their file says, and nothing is shaded";
+  for (const std::string_view unused :
+       {"image", "scene.camera", "scene.eye", "scene.look_at", "scene.up", "scene.field_of_view", "scene.sky",
+        "scene.sun", "scene.sun_color", "scene.default_light"}) {
+    config.mark_unused_reason(unused, reason, "image.integrator");
+  }
+}
+
+}  // namespace
+
+FrameConfig read_frame(sim::Config& config) {
+  FrameConfig frame;
+  frame.scene = config.text("scene.source");
+  frame.open.base_directory = directory_of(config, "scene.source");
+  if (scenes::names_a_file(frame.scene)) {
+    refuse_missing(config, "scene.source", frame.open.base_directory / frame.scene,
+                   frame.scene.ends_with('/') ? "folder" : "file");
+  }
+  frame.open.file.scene = config.text("scene.scene");
+  frame.open.file.animation = config.text("scene.animation");
+  frame.open.file.strict = config.boolean("scene.strict");
+  frame.frames.count = count(config, "frames.count");
+  frame.frames.first = count(config, "frames.first");
+  frame.frames.rate = config.real("frames.rate");
+  frame.open.file.time = frame.frames.time(0);
+  config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
+  frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
+  if (frame.render.integrator == processors::program::Integrator::rays) {
+    read_rays(config, frame);
+  } else {
+    read_image(config, frame);
+  }
   read_structure(config, frame);
   read_for_units(config, frame);
   frame.memory = read_memory(config);
@@ -410,11 +467,18 @@ FrameConfig read_frame(sim::Config& config) {
   return frame;
 }
 
+void refuse_given_rays(const sim::Config& config, const FrameConfig& frame) {
+  if (frame.render.integrator == processors::program::Integrator::rays) {
+    config.fail("image.integrator", "the study is of images; rays of a file are for runs and sweeps");
+  }
+}
+
 FrameConfig read_one_frame(sim::Config& config) {
   FrameConfig frame = read_frame(config);
   if (frame.frames.count > 1) {
     config.fail("frames.count", "the study renders one frame, that of frames.first");
   }
+  refuse_given_rays(config, frame);
   return frame;
 }
 

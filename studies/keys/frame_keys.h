@@ -59,14 +59,17 @@ void declare_frame_keys(sim::Schema& schema);
 /// Lets the structure, whichever is built, take what is left of the budget.
 void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& options);
 
-/// Where a scene file that the configuration names is looked for: beside the configuration, or in the current
-/// directory (empty) if the command line names it.
-[[nodiscard]] std::filesystem::path directory_of_scene(const sim::Config& config);
+/// Where a file that a key of the configuration names is looked for: beside the configuration, or in the
+/// current directory (empty) if the command line names it.
+[[nodiscard]] std::filesystem::path directory_of(const sim::Config& config, std::string_view key);
 
 /// Throws UserError naming file, line and key.
 [[nodiscard]] FrameConfig read_frame(sim::Config& config);
 
-/// Like read_frame, for a study of one frame: refuses several.
+/// For studies, all of which are of images: refuses a frame of image.rays.
+void refuse_given_rays(const sim::Config& config, const FrameConfig& frame);
+
+/// Like read_frame, for a study of one frame: refuses several, and given rays.
 [[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
 
 }  // namespace marti::studies::keys

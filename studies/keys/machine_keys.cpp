@@ -1,16 +1,21 @@
 #include "studies/keys/machine_keys.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "accel/bvh_options.h"
 #include "processors/cost/cost_model.h"
 #include "processors/energy/energy.h"
+#include "processors/program/work_log.h"
+#include "scenes/given_rays.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
@@ -178,7 +183,8 @@ void declare_interconnect(Schema& schema) {
 
 void declare_host(Schema& schema) {
   schema.section("packets", "the rectangles of pixels that are handed out");
-  schema.integer("packets.width", 8, {1, 65536}, "pixels", "columns of a packet");
+  schema.integer("packets.width", 8, {1, 65536}, "pixels",
+                 "columns of a packet; of image.rays, a packet is width times height successive rays");
   schema.integer("packets.height", 8, {1, 65536}, "pixels", "rows of a packet");
   schema.choice("packets.order", "scanline", names(processors::machine::packet_order_names),
                 "order of handing out");
@@ -193,6 +199,24 @@ void declare_host(Schema& schema) {
          "move, cycles until the first ray");
   cycles(schema, "host.occupancy_cycles", 0,
          "cycles that one request, or one camera ray, keeps the host from the next");
+}
+
+// Given rays follow one another in a single row, so a packet of them is a run of as many.
+processors::machine::PacketConfig read_packets(sim::Config& config) {
+  using processors::program::Integrator;
+  processors::machine::PacketConfig packets{count(config, "packets.width"), count(config, "packets.height")};
+  const std::optional<std::size_t> integrator = config.schema().find("image.integrator");
+  if (integrator && std::get<std::string>(config.values_at(*integrator).front()) ==
+                        processors::program::integrator_names[static_cast<std::size_t>(Integrator::rays)]) {
+    constexpr std::uint64_t most = scenes::most_given_rays;
+    const std::uint64_t rays = std::uint64_t{packets.width} * packets.height;
+    packets = {static_cast<std::uint32_t>(std::min(rays, most)), 1};
+    config.mark_unused_reason("packets.order", "rays of a file are handed out in its order",
+                              "image.integrator");
+  } else {
+    packets.order = config.choice_as<processors::machine::PacketOrder>("packets.order");
+  }
+  return packets;
 }
 
 // A size that must be a power of two.
@@ -438,8 +462,7 @@ processors::machine::MachineConfig read_machine(sim::Config& config) {
   read_space(config, machine);
   read_count(config, machine);
   read_energy(config, machine);
-  machine.packets = {count(config, "packets.width"), count(config, "packets.height"),
-                     config.choice_as<processors::machine::PacketOrder>("packets.order")};
+  machine.packets = read_packets(config);
   if (image) {
     machine.host.assignment = config.choice_as<processors::machine::Assignment>("host.assignment");
   }

@@ -136,6 +136,9 @@ std::string plain_setting(const std::string& toml) {
 }
 
 std::string pixels_of(const std::map<std::string, std::string>& settings) {
+  if (const auto rays = settings.find("image.rays"); rays != settings.end()) {
+    return "rays of " + plain_setting(rays->second);
+  }
   const auto width = settings.find("image.width");
   const auto height = settings.find("image.height");
   if (width == settings.end() || height == settings.end()) {

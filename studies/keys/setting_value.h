@@ -25,8 +25,8 @@ namespace marti::studies::keys {
 /// stays "\"\"".
 [[nodiscard]] std::string plain_setting(const std::string& toml);
 
-/// "512 x 512 pixels", with the region that is rendered if it is not all of them; empty where `settings`,
-/// TOML text by key, do not say it.
+/// "512 x 512 pixels", with the region that is rendered if it is not all of them, or "rays of FILE"; empty
+/// where `settings`, TOML text by key, do not say it.
 [[nodiscard]] std::string pixels_of(const std::map<std::string, std::string>& settings);
 
 /// `config` of a result.json.

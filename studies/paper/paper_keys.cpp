@@ -101,6 +101,7 @@ PaperConfig read_paper(sim::Config& config) {
     }
   }
   paper.frame = keys::read_frame(config);
+  keys::refuse_given_rays(config, paper.frame);
   if (paper.frame.render.voxel_cut > 0.0) {
     config.fail("image.voxel_cut", "the study renders exact images");
   }

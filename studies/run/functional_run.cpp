@@ -39,6 +39,7 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   }
   sample.samples = std::min(sample.samples, sample_rays);
   sample.record = true;
+  sample.hits = false;
   sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
   const processors::program::Frame frame = processors::program::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
@@ -52,10 +53,12 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   const double bytes = frames * static_cast<double>(totals.bytes + beside) /
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *
                            config.render.samples * 2.0 +
-                       frames * pixels * sizeof(glm::vec3);
-  config.memory.require(static_cast<std::uint64_t>(std::min(bytes, 9e18)),
-                        "the image and its work log may take",
-                        "lower image.width, image.height, image.samples or image.max_depth");
+                       frames * pixels * sizeof(glm::vec3) +
+                       (config.render.hits ? pixels * sizeof(processors::program::GivenHit) : 0.0);
+  config.memory.require(
+      static_cast<std::uint64_t>(std::min(bytes, 9e18)), "the image and its work log may take",
+      config.open.rays.empty() ? "lower image.width, image.height, image.samples or image.max_depth"
+                               : "take fewer rays");
 }
 
 FunctionalRun run_functional(const keys::FrameConfig& config) {

@@ -100,6 +100,10 @@ PreparedFrame::PreparedFrame(const keys::FrameConfig& config, const scenes::Scen
 
 void PreparedFrame::prepare(const scenes::Scene& scene) {
   scene_ = &scene;
+  if (config_.render.integrator == processors::program::Integrator::rays &&
+      scene.rays.rays.size() > std::uint64_t{config_.render.width} * config_.render.height) {
+    throw sim::KeyError("image.rays", "the file has more rays than when the configuration was read");
+  }
   config_.memory.take(scenes::host_bytes(scene) + accel::TriangleSet::host_bytes(scene), "the scene takes",
                       smaller_scene);
   keys::give_memory(config_.memory, config_.structure_options);

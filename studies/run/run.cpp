@@ -289,6 +289,8 @@ RunResult run(sim::Config& config, RunOptions options) {
   result.frame_config = keys::read_frame(config);
   result.frame_config.keep = options.keep;
   result.frame_config.meter = options.meter;
+  result.frame_config.render.hits =
+      result.frame_config.render.integrator == processors::program::Integrator::rays;
   refuse_several_frames(config, result.frame_config.frames);
   result.machine = keys::read_machine(config);
   const keys::RecordConfig record = keys::read_record(config, !options.directory.empty());

@@ -107,6 +107,14 @@ std::uint64_t scene_hash(const scenes::Scene& scene) {
     hash.add_vector(vector);
   }
   hash.add(scene.camera.vertical_fov);
+  for (std::size_t i = 0; i < scene.rays.rays.size(); ++i) {
+    const scenes::GivenRay& ray = scene.rays.rays[i];
+    hash.add_vector(ray.origin);
+    hash.add_vector(ray.direction);
+    hash.add(ray.least);
+    hash.add(ray.greatest);
+    hash.add(std::uint64_t{scene.rays.wants_any(i) ? 1U : 0U});
+  }
   return hash.value();
 }
 

@@ -12,6 +12,7 @@
 #include "studies/host/image_file.h"
 #include "studies/host/signals_held.h"
 #include "studies/run/record/heat_files.h"
+#include "studies/show/hits_file.h"
 #include "studies/show/result_json.h"
 #include "studies/show/result_parts.h"
 #include "studies/tables/chart.h"
@@ -35,6 +36,9 @@ void add_image(const processors::program::Image& image, const std::string& name,
 
 void add_files(const run::RunResult& result, tables::PendingFiles& files) {
   add_image(result.functional.frame.image, "image", files);
+  if (!result.functional.frame.hits.empty()) {
+    files.write("hits.npy", hits_file(result.functional.frame, result.functional.totals.all_rays()));
+  }
   if (result.functional.voxel_cut && result.functional.voxel_cut->exact) {
     add_image(result.functional.voxel_cut->exact->image, "exact", files);
   }

@@ -61,15 +61,21 @@ void image_lines(Lines out, const run::RunResult& r) {
   const processors::program::WorkLog& log = *r.functional.frame.log;
   const processors::program::LogTotals& totals = r.functional.totals;
   const double rays = static_cast<double>(totals.all_rays());
-  fmt::format_to(out, "image         {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {}{})\n",
-                 keys::size_text(r.frame_config.render),
-                 log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
-                 tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
-                 tables::grouped(totals.rays[1]), tables::grouped(totals.rays[2]),
-                 tables::grouped(totals.rays[3]),
-                 log.integrator == processors::program::Integrator::path
-                     ? fmt::format(", diffuse {}", tables::grouped(totals.rays[4]))
-                     : std::string());
+  if (log.integrator == processors::program::Integrator::rays) {
+    fmt::format_to(out, "rays          {} (closest hit {}, any hit {}), in {} rows of {}\n",
+                   tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
+                   tables::grouped(totals.rays[1]), log.height, log.width);
+  } else {
+    fmt::format_to(
+        out, "image         {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {}{})\n",
+        keys::size_text(r.frame_config.render),
+        log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+        tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]), tables::grouped(totals.rays[1]),
+        tables::grouped(totals.rays[2]), tables::grouped(totals.rays[3]),
+        log.integrator == processors::program::Integrator::path
+            ? fmt::format(", diffuse {}", tables::grouped(totals.rays[4]))
+            : std::string());
+  }
   fmt::format_to(out, "work log      {}, {:.1f} bytes and {:.1f} steps a ray\n",
                  tables::bytes(static_cast<double>(totals.bytes)), static_cast<double>(totals.bytes) / rays,
                  static_cast<double>(totals.all_steps()) / rays);

@@ -14,7 +14,7 @@ std::span<const std::string_view> run_file_names() {
   static constexpr std::string_view names[] = {
       "image.exr",           "image.png",       "exact.exr",      "exact.png",       "heat.exr",
       "heat-cycles.png",     "heat-misses.png", "heat-waits.png", "attribution.csv", "working_set.csv",
-      "working_set.vl.json", "timeline.json",   "intervals.csv"};
+      "working_set.vl.json", "timeline.json",   "intervals.csv",  "hits.npy"};
   return names;
 }
 

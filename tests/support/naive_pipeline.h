@@ -336,7 +336,7 @@ class NaivePipeline {
                !(shadow && ray.logged().first_child == processors::program::LoggedRay::none)) {
       send_next(who, Stage::shade);
       at += send_;
-    } else if (!shadow || ray.lit) {
+    } else if (!shadow || ray.lit || ray.number == 0) {
       state.doing = Doing::contributing;
       node.messaging += send_;
       at += send_;

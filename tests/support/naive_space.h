@@ -91,7 +91,7 @@ class NaiveSpace {
     [[nodiscard]] const processors::program::LoggedRay& logged() const { return (*tree)[number]; }
     [[nodiscard]] bool over() const { return word == logged().end; }
     [[nodiscard]] bool contributes() const {
-      bool lit = logged().kind != processors::program::RayKind::shadow;
+      bool lit = logged().kind != processors::program::RayKind::shadow || number == 0;
       for (const std::uint32_t* w = logged().begin; w != logged().end;
            w += processors::program::step_words(w)) {
         lit = lit || processors::program::step_of(*w) == processors::program::Step::light;

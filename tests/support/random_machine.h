@@ -77,7 +77,11 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
   for (processors::program::LogRow& row : log.rows) {
     for (std::uint32_t x = 0; x < width; ++x) {
       row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
-      row.words.push_back(make_word(Step::ray, 0));
+      // Now and then a given ray that any hit will do for.
+      const bool any = pick(random, 0, 7) == 0;
+      row.words.push_back(any ? make_word(Step::ray, processors::program::ray_operand(
+                                                         processors::program::RayKind::shadow, 0))
+                              : processors::program::camera_ray);
       for (std::int64_t left = pick(random, 0, most_words_a_pixel); left > 0; --left) {
         const std::uint32_t leaf = leaves[random() % leaves.size()];
         switch (pick(random, 0, 10)) {

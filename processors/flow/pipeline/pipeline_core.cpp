@@ -63,7 +63,7 @@ void PipelineCore::worked_to_end(std::uint32_t node, const FlowRay& ray, sim::Ti
     return;
   }
   at.phase = Phase::ending;
-  if (!shadow || ray.lit) {
+  if (!shadow || ray.lit || ray.number == 0) {
     at.phase = Phase::contributing;
     spend(node, cost::Activity::messaging, send_);
     time = sim::add_ticks(time, send_);

@@ -362,8 +362,11 @@ class SpaceNodes final : public FlowNodesBase<SpaceNodes<Caches>> {
     }
   }
 
-  // Whether a ray adds to its pixel when it ends; a shadow ray only does if it has reached its light.
-  static bool contributes(const FlowRay& ray) { return ray.kind != program::RayKind::shadow || ray.lit; }
+  // Whether a ray adds to its pixel when it ends; a shadow ray that another ray made only does if it has
+  // reached its light.
+  static bool contributes(const FlowRay& ray) {
+    return ray.kind != program::RayKind::shadow || ray.lit || ray.number == 0;
+  }
 
   void done(std::uint32_t number, sim::Ticks now) {
     const std::uint32_t ray = std::exchange(nodes_[number].current, RayPool::none);

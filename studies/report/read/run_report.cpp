@@ -110,11 +110,13 @@ void add_files(const fs::path& directory, const tables::RunJson& run, ReportData
     const char* unit = nullptr;
     const char* plural = nullptr;  // what the unit's plural has more
   };
-  constexpr Image images[] = {{"image.png", "The image"},
-                              {"exact.png", "The exact image, without the voxel cut"},
-                              {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycle", "s"},
-                              {"heat-misses.png", "Heat map: misses of each pixel", "misses", "miss", "es"},
-                              {"heat-waits.png", "Heat map: waits of each pixel", "waits", "cycle", "s"}};
+  const bool rays = keys::settings_of(run).contains("image.rays");
+  const Image images[] = {
+      {"image.png", rays ? "What the rays hit, row by row: lighter is nearer" : "The image"},
+      {"exact.png", "The exact image, without the voxel cut"},
+      {"heat-cycles.png", "Heat map: cycles of each pixel", "cycles", "cycle", "s"},
+      {"heat-misses.png", "Heat map: misses of each pixel", "misses", "miss", "es"},
+      {"heat-waits.png", "Heat map: waits of each pixel", "waits", "cycle", "s"}};
   for (const Image& image : images) {
     if (is_of_run(directory, image.name, files, report)) {
       take_image(directory / image.name, image.title, report,

@@ -11,6 +11,8 @@ namespace marti::studies::run {
 
 namespace {
 
+constexpr const char* given_rays = "the rays of image.rays end at what they hit";
+
 std::string of(std::uint64_t part, std::uint64_t whole, std::string_view what) {
   std::string text = std::to_string(part) + " of " + std::to_string(whole) + " ";
   return text.append(what);
@@ -35,7 +37,9 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   const SceneNeeds& needs = facts.needs;
   Choice choice;
   std::string lights = of(needs.shining_lights, needs.lights, "lights shine");
-  if (!facts.render.shadows) {
+  if (facts.render.integrator == processors::program::Integrator::rays) {
+    choice = {false, false, given_rays};
+  } else if (!facts.render.shadows) {
     choice = {false, false, "image.shadows is false"};
   } else if (needs.shining_lights == 0) {
     choice = {false, false, std::move(lights)};
@@ -53,7 +57,9 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
 PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::uint64_t sending,
                        std::uint64_t beside, std::string_view verb) {
   Choice choice;
-  if (facts.render.max_depth <= 1) {
+  if (facts.render.integrator == processors::program::Integrator::rays) {
+    choice = {false, false, given_rays};
+  } else if (facts.render.max_depth <= 1) {
     choice = {false, false, "image.max_depth is 1"};
   } else {
     choice.needed = needed;

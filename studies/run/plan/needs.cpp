@@ -32,6 +32,12 @@ class Finder {
   }
 
   SceneNeeds find() {
+    if (options_.integrator == processors::program::Integrator::rays) {
+      needs_.primitives = in_view_.size();
+      needs_.materials.resize(scene_.materials.size());
+      needs_.textures.resize(scene_.textures.size());
+      return needs_;  // given rays shade nothing
+    }
     find_materials();
     find_rays();
     find_textures();

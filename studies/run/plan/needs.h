@@ -41,7 +41,8 @@ struct SceneNeeds {
   std::uint64_t smooth = 0;
 };
 
-/// With the voxel cut everything is needed: its averages are made of all materials and normals.
+/// With the voxel cut everything is needed: its averages are made of all materials and normals. With
+/// Integrator::rays nothing is but the primitives.
 [[nodiscard]] SceneNeeds needs_of(const scenes::Scene& scene,
                                   const processors::program::RenderOptions& options);
 

@@ -80,8 +80,9 @@ void MachineList::move_into(SweepPlan& plan) && {
 
 std::size_t MachineList::enter_frame(const ReadPoint& read) {
   // The same file name means another file in another base directory.
-  const bool file = scenes::names_a_file(read.frame.scene);
-  const std::string known = read.frame_digest + (file ? read.frame.open.base_directory.string() : "");
+  const bool file = scenes::names_a_file(read.frame.scene) || !read.frame.open.rays.empty();
+  const std::string known = read.frame_digest + (file ? read.frame.open.base_directory.string() : "") +
+                            read.frame.open.rays.string();
   if (const auto found = frame_of_digest_.find(known); found != frame_of_digest_.end()) {
     return found->second;
   }

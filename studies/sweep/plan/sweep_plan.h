@@ -19,11 +19,12 @@ namespace marti::studies::sweep {
 /// One functional run: equal values give the same image and the same work log.
 struct SweepFrame {
   /// 32 hexadecimal digits of the settings, of the program's build (program_build.h) and, where the scene is
-  /// a file, of the scene in it.
+  /// a file or its rays are, of the scene in it.
   std::string key;
   keys::FrameConfig config;
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*
-  /// Hash of the scene as it was planned, where it is a file; the scene must be the same when it is traced.
+  /// Hash of the scene as it was planned, where it or its rays are a file; the scene must be the same when it
+  /// is traced.
   std::optional<std::uint64_t> scene_hash{};
 
   /// Camera rays, by which frames and their machines take about as long as others.

@@ -19,9 +19,10 @@ FrameLog trace(const SweepFrame& frame) {
   const scenes::Scene scene = run::open_frame(config);
   const std::uint64_t hash = run::scene_hash(scene);
   if (frame.scene_hash && *frame.scene_hash != hash) {
-    throw sim::KeyError(
-        "scene.source",
-        sim::shown(config.scene) + ": the scene has changed since the sweep was begun; begin it again");
+    const bool given = !config.open.rays.empty();
+    throw sim::KeyError("scene.source", sim::shown(config.scene) + ": the scene" +
+                                            (given ? ", or what is in the file of image.rays," : "") +
+                                            " has changed since the sweep was begun; begin it again");
   }
   const run::FunctionalRun run = run::run_functional(config, scene);
   return {run.frame.log, frame_row(run, hash)};

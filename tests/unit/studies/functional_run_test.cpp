@@ -19,6 +19,7 @@
 #include "studies/run/run_result.h"
 #include "studies/show/summary.h"
 #include "tests/support/files.h"
+#include "tests/support/ray_file.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -51,6 +52,71 @@ TEST(FunctionalRun, SaysThatATreeWasCut) {
     EXPECT_NE(cut.structure_notes[0].find("division stopped"), std::string::npos);
     EXPECT_LT(cut.frame.log->topology.nodes.size(), whole.frame.log->topology.nodes.size());
     EXPECT_EQ(cut.image_hash, whole.image_hash);
+  }
+}
+
+// A frame of given rays is a rectangle that holds them all, with fewer pixels to spare than it has rows.
+TEST(FunctionalRun, GivenRaysAreAFrame) {
+  const test::TemporaryDirectory directory;
+  for (const std::size_t rays : {1U, 63U, 1024U, 1025U, 5000U}) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < rays; ++i) {
+      numbers.insert(numbers.end(), {0.001 * static_cast<double>(i), 0.0, 9.0, 0.0, 0.0, 0.0, -1.0, 99.0});
+    }
+    test::write(directory.path() / "rays.npy", test::ray_file<float>(numbers));
+    sim::Config config = sim::Config::from_text(
+        run_schema(), "scene.source = \"gears:1\"\nimage.integrator = \"rays\"\nimage.rays = \"rays.npy\"\n",
+        (directory.path() / "a.toml").string());
+    const FrameConfig frame = read_frame(config);
+    const std::uint64_t pixels = std::uint64_t{frame.render.width} * frame.render.height;
+    EXPECT_GE(pixels, rays);
+    EXPECT_LT(pixels, rays + frame.render.height);
+    EXPECT_EQ(frame.render.height, (rays + 1023) / 1024);
+    const FunctionalRun run = run_functional(frame);
+    EXPECT_EQ(run.totals.all_rays(), rays);
+    EXPECT_EQ(run.totals.shades + run.totals.lights, 0U);
+    EXPECT_TRUE(test::says(run.notes.front(), "Rays of rays.npy: " + std::to_string(rays)))
+        << run.notes.front();
+  }
+}
+
+TEST(FunctionalRun, KeysWithoutAMeaningForGivenRaysAreRefused) {
+  const test::TemporaryDirectory directory;
+  test::write(directory.path() / "rays.npy", test::ray_file({0.0, 0.0, 9.0, 0.0, 0.0, 0.0, -1.0, 99.0}));
+  const auto refusal_of = [&](const std::string& settings) {
+    sim::Config config = sim::Config::from_text(
+        run_schema(), "scene.source = \"gears:1\"\nimage.integrator = \"rays\"\n" + settings,
+        (directory.path() / "a.toml").string());
+    return test::user_error_of([&] { (void)run::run(config, {}); });
+  };
+  EXPECT_TRUE(test::says(refusal_of(""), "name it with image.rays"));
+  EXPECT_TRUE(test::says(refusal_of("image.rays = \"none.npy\""), "a.toml:3: image.rays: there is no file"));
+  EXPECT_TRUE(
+      test::says(refusal_of("image.rays = \"a/../rays.npy/\""), "a.toml:3: image.rays: there is no file"));
+  for (const char* const setting : {"image.width = 8",
+                                    "image.height = 8",
+                                    "image.region = [0, 0, 1, 1]",
+                                    "image.samples = 1",
+                                    "image.seed = 2",
+                                    "image.max_depth = 1",
+                                    "image.min_weight = 0.0",
+                                    "image.shadows = true",
+                                    "image.voxel_cut = 1.0",
+                                    "image.voxel_cut_reference = true",
+                                    "scene.camera = \"0\"",
+                                    "scene.eye = [0, 0, 1]",
+                                    "scene.look_at = [0, 0, 1]",
+                                    "scene.up = [0, 0, 1]",
+                                    "scene.field_of_view = 10.0",
+                                    "scene.sky = [1, 1, 1]",
+                                    "scene.sun = [1, 1, 1]",
+                                    "scene.sun_color = [1, 1, 1]",
+                                    "scene.default_light = \"never\"",
+                                    "packets.order = \"morton\""}) {
+    const std::string refusal = refusal_of("image.rays = \"rays.npy\"\n" + std::string(setting));
+    EXPECT_TRUE(test::says(refusal, "a.toml:4: ") && test::says(refusal, " is not used: ") &&
+                test::says(refusal, "rays"))
+        << setting << ": " << refusal;
   }
 }
 

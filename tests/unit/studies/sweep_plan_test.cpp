@@ -22,6 +22,7 @@
 #include "studies/run/run_result.h"
 #include "studies/sweep/plan/digest.h"
 #include "studies/sweep/plan/read_point.h"
+#include "tests/support/ray_file.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 #include "tests/unit/studies/sweep_tables.h"
@@ -327,6 +328,28 @@ TEST(SweepPlan, ASceneFileIsWhatIsInIt) {
   const std::string first = frame_of("one", "teapot:2");
   EXPECT_EQ(frame_of("two", "teapot:2"), first);
   EXPECT_NE(frame_of("one", "teapot:3"), first);
+}
+
+// Files of rays, too, are what is in them: another array under the same name is another frame.
+TEST(SweepPlan, AFileOfRaysIsWhatIsInIt) {
+  const test::TemporaryDirectory directory;
+  const auto frames_of = [&](double x) {
+    sim::write_file(directory.path() / "a.npy", test::ray_file({x, 0.0, 3.0, 0.0, 0.0, 0.0, -1.0, 9.0}));
+    sim::write_file(directory.path() / "b.npy", test::ray_file({2.0, 0.0, 3.0, 0.0, 0.0, 0.0, -1.0, 9.0}));
+    sim::Config config = sim::Config::from_text(sweep_schema(),
+                                                "scene.source = \"tetra:2\"\nimage.integrator = \"rays\"\n"
+                                                "[sweep.axes]\nimage.rays = [\"a.npy\", \"b.npy\"]\n"
+                                                "machine.nodes = [1, 2]\n",
+                                                (directory.path() / "a.toml").string());
+    const SweepPlan plan = plan_sweep(config);
+    EXPECT_EQ(plan.frames.size(), 2U);
+    EXPECT_EQ(plan.machines.size(), 4U);
+    return std::pair(plan.frames.at(0).key, plan.frames.at(1).key);
+  };
+  const auto first = frames_of(0.0);
+  const auto second = frames_of(1.0);
+  EXPECT_NE(first.first, second.first);
+  EXPECT_EQ(first.second, second.second);
 }
 
 TEST(SweepPlan, BaseAndComparisonAreOnesOwn) {
