@@ -6,11 +6,13 @@
 #include <exception>
 #include <filesystem>
 #include <future>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
 #include "sim/error.h"
+#include "sim/files.h"
 #include "sim/joined.h"
 #include "sim/made_directory.h"
 #include "sim/mapped.h"
@@ -30,6 +32,7 @@
 #include "studies/report/read/read_report.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/run_result.h"
+#include "studies/show/hits_file.h"
 #include "studies/show/output.h"
 #include "studies/show/result_json.h"
 #include "studies/show/summary.h"
@@ -269,6 +272,17 @@ Image Result::image() const {
   };
   return data_->live ? rgb_of(data_->live->functional.frame.image)
                      : translated([&] { return rgb_of(host::read_exr(data_->directory / "image.exr")); });
+}
+
+std::string Result::ray_hits() const {
+  return translated([&] {
+    if (!data_->settings.contains("image.rays")) {
+      throw sim::UserError("only image.integrator = \"rays\" says what its rays hit");
+    }
+    return data_->live
+               ? show::hits_file(data_->live->functional.frame, data_->live->functional.totals.all_rays())
+               : sim::read_file(data_->directory / "hits.npy", std::numeric_limits<std::int64_t>::max());
+  });
 }
 
 std::string Result::report() const {

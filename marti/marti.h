@@ -94,6 +94,9 @@ class MARTI_PUBLIC Result {
   [[nodiscard]] const std::string& summary() const;
   /// Throws Error when the image cannot be read.
   [[nodiscard]] Image image() const;
+  /// What the rays of image.rays hit, an array of NumPy as docs/scenes.md describes hits.npy. Throws Error
+  /// for a result without given rays, or whose file cannot be read.
+  [[nodiscard]] std::string ray_hits() const;
   /// The page of `marti report`: one HTML file that loads nothing.
   [[nodiscard]] std::string report() const;
   /// Writes what `marti run -o` writes. Throws Error for a directory that holds another kind of result, and

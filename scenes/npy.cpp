@@ -155,7 +155,7 @@ NpyHeader read_npy_header(std::istream& in) {
   if (!in || std::string_view(begin.data(), magic.size()) != magic) {
     throw sim::UserError("it is no array of NumPy (.npy): it does not begin as these do");
   }
-  const int version = begin[6];
+  const auto version = static_cast<unsigned char>(begin[6]);
   if (version < 1 || version > 3) {
     throw sim::UserError("the array's file has format " + std::to_string(version) +
                          "; formats 1 to 3 of .npy files can be read");

@@ -91,6 +91,14 @@ PYBIND11_MODULE(_marti, module) {
              }();
              return array_of(image);
            })
+      .def("ray_hits",
+           [](const marti::Result& result) {
+             const std::string file = [&] {
+               const py::gil_scoped_release released;
+               return result.ray_hits();
+             }();
+             return py::bytes(file);
+           })
       .def("report", &marti::Result::report, WithoutGil())
       .def("save", &marti::Result::save, WithoutGil());
   py::class_<marti::Sweep>(module, "Sweep")

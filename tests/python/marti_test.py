@@ -135,6 +135,43 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(marti.Error, "record.timeline"):
             marti.run(self.config, SMALL, record__timeline=True)
 
+    def test_rays_may_be_an_array(self):
+        numbers = numpy.random.default_rng(3)
+        rays = numpy.zeros((500, 9))
+        rays[:, 0:3] = numbers.uniform(-1.0, 1.0, (500, 3))
+        rays[:, 4:7] = numbers.normal(size=(500, 3))
+        rays[:, 7] = numpy.where(numpy.arange(500) % 3 == 0, 0.5, numpy.inf)
+        rays[::2, 8] = 1
+        scene = {"scene.source": "tetra:3"}
+        for array in (rays, rays[:, :8], rays.astype(numpy.float32), numpy.asfortranarray(rays)):
+            with tempfile.TemporaryDirectory() as directory:
+                result = marti.run(self.config, scene, rays=array, directory=directory)
+                file = pathlib.Path(directory, "dumped.npy")
+                numpy.save(file, numpy.ascontiguousarray(array))
+                of_file = {**scene, "image.integrator": "rays", "image.rays": file}
+                printed = json.loads(program("run", self.config, "--json", *given(of_file)))
+                self.assertEqual(result.end, printed["figures"]["machine"]["end"])
+                self.assertEqual(result["frame.camera_rays"], 250 if array.shape[1] == 9 else 500)
+                hits = result.ray_hits
+                # As bytes, because a distance may be no number.
+                self.assertEqual(hits.tobytes(), numpy.load(pathlib.Path(directory, "hits.npy")).tobytes())
+                self.assertEqual(hits.tobytes(), marti.run(self.config, scene, rays=array).ray_hits.tobytes())
+                self.assertEqual(hits.shape, (500,))
+                found = hits["primitive"] >= 0
+                self.assertGreater(found.sum(), 10)
+                numpy.testing.assert_allclose(hits["weights"][found].sum(axis=1), 1.0)
+                self.assertTrue((hits["distance"][found] <= array[found, 7]).all())
+                self.assertTrue(numpy.isinf(hits["distance"][hits["primitive"] == -1]).all())
+                if array.shape[1] == 9:
+                    self.assertFalse((array[found, 8] == 1).any())
+                    self.assertGreater((hits["primitive"] == -2).sum(), 10)
+        rays[17, 4:7] = 0
+        with self.assertRaisesRegex(marti.Error, "ray 17 .*: its direction is 0") as caught:
+            marti.run(self.config, scene, rays=rays)
+        self.assertEqual(caught.exception.key, "image.rays")
+        with self.assertRaisesRegex(marti.Error, "image.integrator"):
+            self.result.ray_hits
+
     def test_the_page_is_shown_in_notebooks(self):
         page = self.result.report()
         self.assertTrue(page.html.startswith("<!DOCTYPE html>"))

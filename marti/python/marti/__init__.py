@@ -23,6 +23,7 @@ from __future__ import annotations
 import concurrent.futures
 import functools
 import html
+import io
 import json as _json
 import os
 import pathlib
@@ -48,14 +49,32 @@ ATTEMPTS = 3
 
 
 def run(
-    config: Path = None, settings: Mapping[str, Any] | None = None, *, directory: Path = None, **more: Any
+    config: Path = None,
+    settings: Mapping[str, Any] | None = None,
+    *,
+    rays: numpy.ndarray | None = None,
+    directory: Path = None,
+    **more: Any,
 ) -> Result:
     """One frame on one machine.
 
     config: a TOML file; None: all keys have their defaults. Settings override the file: {"machine.nodes": 64}, or as
     arguments with two underscores for the dot, machine__nodes=64, which count if both are given. directory: where all
-    is written that `marti run -o` writes, with what the run records. Error if a setting or the file is wrong."""
-    return Result(_marti.run(_file(config), _assignments(settings, more), _file(directory)))
+    is written that `marti run -o` writes, with what the run records. Error if a setting or the file is wrong.
+
+    rays: an array of n x 8 or n x 9 numbers, as docs/scenes.md describes image.rays, traced in the place of an image:
+    origin, least distance, direction, greatest distance, 0 for the closest hit or 1 for any."""
+    assignments = _assignments(settings, more)
+    if rays is None:
+        return Result(_marti.run(_file(config), assignments, _file(directory)))
+    import numpy
+
+    array = numpy.asarray(rays)
+    with tempfile.TemporaryDirectory(prefix="marti-") as place:
+        file = os.path.join(place, "rays.npy")
+        numpy.save(file, numpy.ascontiguousarray(array, array.dtype if array.dtype == numpy.float32 else numpy.float64))
+        given = ["image.integrator=rays", f"image.rays={file}"]
+        return Result(_marti.run(_file(config), assignments + given, _file(directory)))
 
 
 def sweep(
@@ -190,6 +209,13 @@ class Result(_Shown):
     def image(self) -> numpy.ndarray:
         """Linear RGB as float32, height x width x 3, rows from the top."""
         return self._own.image()
+
+    @functools.cached_property
+    def ray_hits(self) -> numpy.ndarray:
+        """What each given ray hits, with fields distance, primitive and weights, as docs/scenes.md describes hits.npy."""
+        import numpy
+
+        return numpy.load(io.BytesIO(self._own.ray_hits()))
 
     def save(self, directory: Path) -> None:
         """Writes what `marti run -o` writes."""
