@@ -270,8 +270,15 @@ Image Result::image() const {
     }
     return made;
   };
-  return data_->live ? rgb_of(data_->live->functional.frame.image)
-                     : translated([&] { return rgb_of(host::read_exr(data_->directory / "image.exr")); });
+  return translated([&] {
+    if (!data_->live) {
+      return rgb_of(host::read_exr(data_->directory / "image.exr"));
+    }
+    if (data_->live->frame_config.log != nullptr) {
+      throw sim::UserError("a frame from a log (scene.log) has no image");
+    }
+    return rgb_of(data_->live->functional.frame.image);
+  });
 }
 
 std::string Result::ray_hits() const {

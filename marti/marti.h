@@ -92,7 +92,7 @@ class MARTI_PUBLIC Result {
   [[nodiscard]] const std::string& json() const;
   /// As `marti run` prints it; of a result that was opened its answer alone.
   [[nodiscard]] const std::string& summary() const;
-  /// Throws Error when the image cannot be read.
+  /// Throws Error when the image cannot be read, and of a frame from a log (scene.log), which has none.
   [[nodiscard]] Image image() const;
   /// What the rays of image.rays hit, an array of NumPy as docs/scenes.md describes hits.npy. Throws Error
   /// for a result without given rays, or whose file cannot be read.

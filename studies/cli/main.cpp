@@ -51,12 +51,14 @@
 #include "studies/host/signals_held.h"
 #include "studies/keys/config_file.h"
 #include "studies/keys/price_keys.h"
+#include "studies/log_file/packed_file.h"
 #include "studies/operations/operations.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/progress/progress_line.h"
 #include "studies/report/report_command.h"
 #include "studies/run/run_result.h"
+#include "studies/run/saved_frame.h"
 #include "studies/run/trace/trace.h"
 #include "studies/schemes/schemes.h"
 #include "studies/schemes/schemes_keys.h"
@@ -153,12 +155,17 @@ struct RunArguments {
   bool verify_plan = false;
   bool what_helps = false;
   bool no_what_helps = false;
+  std::string log;
 };
 
 // `exact` has a meter.
 void run_within_command(const RunArguments& arguments, sim::Config& config, run::RunOptions exact) {
   if (!arguments.keep.empty() || arguments.verify_plan) {
     throw sim::UserError("--keep and --verify-plan are for exact runs; leave --within out");
+  }
+  if (!arguments.log.empty()) {
+    throw sim::UserError(
+        "--within traces only a part of the frame, and --save-log needs all of it; leave one out");
   }
   if (!arguments.directory.empty()) {
     throw sim::UserError(
@@ -195,6 +202,11 @@ void run_command(const RunArguments& arguments) {
     return;
   }
   const sim::MadeDirectory made = show::prepare_run(arguments.directory);
+  std::optional<log_file::PackedWriter>
+      log;  // a file that cannot be written is told of before the frame is traced
+  if (!arguments.log.empty()) {
+    log.emplace(arguments.log);
+  }
   std::optional<progress::ShownMeter> shown(std::in_place, meter);
   const run::RunResult result = run::run(config, std::move(options));
   const show::PlanVerdict verdict = arguments.verify_plan ? show::verify_plan(result) : show::PlanVerdict();
@@ -202,9 +214,15 @@ void run_command(const RunArguments& arguments) {
   if (!verdict.holds) {
     throw sim::InternalError("the plan is wrong\n" + verdict.text);
   }
+  if (log) {
+    run::save_frame(result.functional, result.frame_config.render, result.values, *log);
+  }
   show::WrittenRun written;
   if (!arguments.directory.empty()) {
     written = show::write_output(result, arguments.directory);
+  }
+  if (log) {
+    written.files.emplace_back(arguments.log);
   }
   if (arguments.json) {
     print(written.json.empty() ? show::json_of(result) : written.json);
@@ -596,6 +614,11 @@ int parse_and_run(int argc, char** argv) {
       ->check([](const std::string& text) {
         return text.empty() ? std::string("must be a percentage, such as \"2 %\"") : std::string();
       });
+  run->add_option("--save-log", run_arguments.log,
+                  "writes the work log to this file, which other configurations may then name as scene.log")
+      ->type_name("FILE")
+      ->check(
+          [](const std::string& name) { return name.empty() ? "the name of a file must not be empty" : ""; });
   run->add_option("--keep", run_arguments.keep,
                   "does not leave this item of the plan out, or \"all\"; may be repeated")
       ->type_name("ITEM")

@@ -45,7 +45,7 @@ sim::Schema error_schema() {
 
 ErrorConfig read_error(sim::Config& config) {
   ErrorConfig error;
-  error.frame = keys::read_one_frame(config);
+  error.frame = keys::read_one_frame(config, keys::FrameUse::error);
   error.machine = keys::read_machine(config);
   error.within = keys::ascending<double>(config, "error.within");
   error.divisors = keys::ascending<std::uint32_t>(config, "error.divisors");

@@ -1,5 +1,6 @@
 #include "studies/estimate/sampled_frame.h"
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,6 +62,43 @@ SampledFrame sampled_frame(const run::PreparedFrame& prepared) {
           [&prepared](const processors::program::PixelSet& only, const processors::program::Frame* before) {
             return prepared.trace(&only, before);
           }};
+}
+
+namespace {
+
+// The pixels of `only`, and those that `before` has.
+processors::program::WorkLog part_of(const processors::program::WorkLog& whole,
+                                     const processors::program::PixelSet& only,
+                                     const processors::program::WorkLog* before) {
+  processors::program::WorkLog part = whole;
+  for (std::uint32_t y = 0; y < whole.height; ++y) {
+    processors::program::LogRow& row = part.rows[y];
+    row = {};
+    row.begin.reserve(std::size_t{whole.width} + 1);
+    for (std::uint32_t x = 0; x < whole.width; ++x) {
+      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+      const std::span<const std::uint32_t> pixel = only.has(x, y)      ? whole.pixel(x, y)
+                                                   : before != nullptr ? before->pixel(x, y)
+                                                                       : std::span<const std::uint32_t>();
+      row.words.insert(row.words.end(), pixel.begin(), pixel.end());
+    }
+    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+  }
+  return part;
+}
+
+}  // namespace
+
+SampledFrame sampled_frame(const run::FunctionalRun& traced) {
+  const processors::program::WorkLog& whole = *traced.frame.log;
+  return {
+      whole.width, whole.height,
+      [&traced, &whole](const processors::program::PixelSet& only, const processors::program::Frame* before) {
+        processors::program::Frame frame = traced.frame;
+        frame.log = std::make_shared<const processors::program::WorkLog>(
+            part_of(whole, only, before == nullptr ? nullptr : before->log.get()));
+        return frame;
+      }};
 }
 
 }  // namespace marti::studies::estimate

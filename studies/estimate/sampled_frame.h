@@ -9,6 +9,7 @@
 #include "processors/program/pixel_set.h"
 #include "processors/program/render.h"
 #include "studies/estimate/packet_windows.h"
+#include "studies/run/functional_run.h"
 #include "studies/run/prepared_frame.h"
 
 namespace marti::studies::estimate {
@@ -59,5 +60,8 @@ class SampledFrame {
 
 /// Of a frame that is ready to be traced; it must outlive what is returned.
 [[nodiscard]] SampledFrame sampled_frame(const run::PreparedFrame& prepared);
+
+/// Of a frame that is traced already: takes the pixels from its log. It must outlive what is returned.
+[[nodiscard]] SampledFrame sampled_frame(const run::FunctionalRun& traced);
 
 }  // namespace marti::studies::estimate

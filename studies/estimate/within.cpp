@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -107,12 +108,18 @@ std::string run_within(sim::Config& config, double tolerance, bool json, run::Ru
     return exact_output(run::run(config, std::move(exact)), *reason, json);
   }
   return sim::with_places(config, [&] {
-    const run::PreparedFrame prepared(frame);
-    SampledFrame sampled = sampled_frame(prepared);
+    std::optional<run::PreparedFrame> prepared;
+    run::FunctionalRun logged;
+    if (frame.log == nullptr) {
+      prepared.emplace(frame);
+    } else {
+      logged = run::run_functional(frame);
+    }
+    SampledFrame sampled = prepared ? sampled_frame(*prepared) : sampled_frame(logged);
     const processors::machine::PacketList packets(frame.render.width, frame.render.height, machine.packets);
     const WithinAnswer answer = estimate_within(sampled, packets, machine, tolerance);
     if (!answer.estimate) {
-      exact.functional = prepared.finish(std::move(sampled).whole());
+      exact.functional = prepared ? prepared->finish(std::move(sampled).whole()) : std::move(logged);
       return exact_output(run::run(config, std::move(exact)), answer.reason, json);
     }
     run::RunResult result;
@@ -120,7 +127,14 @@ std::string run_within(sim::Config& config, double tolerance, bool json, run::Ru
     result.values = config.effective_values();
     result.frame_config = frame;
     result.machine = machine;
-    result.functional = prepared.part(std::move(sampled).part());
+    processors::program::Frame part = std::move(sampled).part();
+    if (prepared) {
+      result.functional = prepared->part(std::move(part));
+    } else {
+      result.functional = std::move(logged);
+      result.functional.frame = std::move(part);
+      result.functional.totals = processors::program::totals_of(*result.functional.frame.log);
+    }
     return json ? estimate_json(result, *answer.estimate, tolerance)
                 : estimate_text(result, *answer.estimate, tolerance);
   });

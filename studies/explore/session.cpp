@@ -38,9 +38,9 @@ std::string section_of(const std::string& key) { return key.substr(0, key.rfind(
 
 // A text in a value of the configuration that is to hold in any directory.
 std::string value_anywhere(const sim::Config& config, const sim::Key& key, std::size_t index) {
-  if (key.name == "scene.source" || key.name == "image.rays") {
+  if (key.name == "scene.source" || key.name == "scene.log" || key.name == "image.rays") {
     const auto& source = std::get<std::string>(config.values_at(index).front());
-    if (key.name == "image.rays" ? !source.empty() : scenes::names_a_file(source)) {
+    if (key.name == "scene.source" ? scenes::names_a_file(source) : !source.empty()) {
       const std::filesystem::path file =
           std::filesystem::absolute(keys::directory_of(config, key.name) / source);
       return sim::print_value(key.type, file.lexically_normal().string());

@@ -38,8 +38,7 @@ void refuse_large_machines(const sim::Config& config, const FramesConfig& frames
 
 FramesConfig read_frames(sim::Config& config) {
   FramesConfig frames;
-  frames.frame = keys::read_frame(config);
-  keys::refuse_given_rays(config, frames.frame);
+  frames.frame = keys::read_frame(config, keys::FrameUse::frames);
   if (frames.frame.structure != "octree") {
     config.fail("structure.kind", "only an octree is rebuilt in part");
   }

@@ -151,6 +151,9 @@ void declare_frame_keys(sim::Schema& schema) {
       "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file, "
       "or a folder of such files with a slash at its end, relative to the configuration (with --set: to the "
       "current directory)");
+  schema.text("scene.log", "",
+              "a work log that `marti run --save-log` has written, which is read in the place of the scene; "
+              "keys of scene, frames, image and structure are those of the log (docs/scenes.md)");
   schema.text("scene.scene", "", "scene of the file, by index or name; empty: the file's default");
   schema.text("scene.camera", "", "camera of the file, by index or name; empty: the first");
   schema.reals("scene.eye", {}, {-1e30, 1e30}, "",
@@ -411,17 +414,22 @@ void read_rays(sim::Config& config, FrameConfig& frame) {
   if (name.empty()) {
     config.fail("image.integrator", "\"rays\" traces the rays of a file; name it with image.rays");
   }
-  frame.open.rays = directory_of(config, key) / name;
-  refuse_missing(config, key, frame.open.rays, "file");
-  const std::uint64_t rays = sim::with_places(config, [&] {
-    return sim::KeyError::reported_under(key, [&] { return scenes::count_rays(frame.open.rays); });
-  });
-  constexpr std::uint64_t least_row = 1024;
-  const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays)));
-  const std::uint64_t row = std::max(least_row, std::bit_ceil(side));
-  const std::uint64_t rows = (rays + row - 1) / row;
-  frame.render.height = static_cast<std::uint32_t>(rows);
-  frame.render.width = static_cast<std::uint32_t>((rays + rows - 1) / rows);
+  if (frame.log != nullptr) {
+    frame.render.width = frame.log->head.width;
+    frame.render.height = frame.log->head.height;
+  } else {
+    frame.open.rays = directory_of(config, key) / name;
+    refuse_missing(config, key, frame.open.rays, "file");
+    const std::uint64_t rays = sim::with_places(config, [&] {
+      return sim::KeyError::reported_under(key, [&] { return scenes::count_rays(frame.open.rays); });
+    });
+    constexpr std::uint64_t least_row = 1024;
+    const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(rays)));
+    const std::uint64_t row = std::max(least_row, std::bit_ceil(side));
+    const std::uint64_t rows = (rays + row - 1) / row;
+    frame.render.height = static_cast<std::uint32_t>(rows);
+    frame.render.width = static_cast<std::uint32_t>((rays + rows - 1) / rows);
+  }
   frame.render.max_depth = 1;
   frame.render.shadows = false;
   frame.open.file.default_light = scenes::DefaultLight::never;
@@ -436,11 +444,12 @@ void read_rays(sim::Config& config, FrameConfig& frame) {
 
 }  // namespace
 
-FrameConfig read_frame(sim::Config& config) {
+FrameConfig read_frame(sim::Config& config, FrameUse use) {
   FrameConfig frame;
+  frame.log = read_log(config, use);
   frame.scene = config.text("scene.source");
   frame.open.base_directory = directory_of(config, "scene.source");
-  if (scenes::names_a_file(frame.scene)) {
+  if (frame.log == nullptr && scenes::names_a_file(frame.scene)) {
     refuse_missing(config, "scene.source", frame.open.base_directory / frame.scene,
                    frame.scene.ends_with('/') ? "folder" : "file");
   }
@@ -454,12 +463,21 @@ FrameConfig read_frame(sim::Config& config) {
   config.mark_unused_reason("frames.verify", "only `marti study frames` renders frames twice");
   frame.render.integrator = config.choice_as<processors::program::Integrator>("image.integrator");
   if (frame.render.integrator == processors::program::Integrator::rays) {
+    if (use != FrameUse::timing) {
+      config.fail("image.integrator", "the study is of images; rays of a file are for runs and sweeps");
+    }
     read_rays(config, frame);
   } else {
     read_image(config, frame);
   }
   read_structure(config, frame);
   read_for_units(config, frame);
+  if (frame.log != nullptr) {
+    if (frame.exact_too) {
+      config.fail("image.voxel_cut_reference", "the exact image is traced, and a log has no images");
+    }
+    check_recorded(config, *frame.log, frame.render);
+  }
   frame.memory = read_memory(config);
   give_memory(frame.memory, frame.structure_options);
   frame.open.file.memory = frame.memory;
@@ -467,18 +485,11 @@ FrameConfig read_frame(sim::Config& config) {
   return frame;
 }
 
-void refuse_given_rays(const sim::Config& config, const FrameConfig& frame) {
-  if (frame.render.integrator == processors::program::Integrator::rays) {
-    config.fail("image.integrator", "the study is of images; rays of a file are for runs and sweeps");
-  }
-}
-
-FrameConfig read_one_frame(sim::Config& config) {
-  FrameConfig frame = read_frame(config);
+FrameConfig read_one_frame(sim::Config& config, FrameUse use) {
+  FrameConfig frame = read_frame(config, use);
   if (frame.frames.count > 1) {
     config.fail("frames.count", "the study renders one frame, that of frames.first");
   }
-  refuse_given_rays(config, frame);
   return frame;
 }
 

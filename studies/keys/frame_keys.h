@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "accel/structure.h"
 #include "processors/program/render.h"
@@ -12,6 +14,7 @@
 #include "sim/memory_budget.h"
 #include "sim/schema.h"
 #include "sim/work_meter.h"
+#include "studies/keys/logged_frame.h"
 #include "studies/run/plan/plan.h"
 
 namespace marti::studies::keys {
@@ -40,6 +43,8 @@ struct FrameConfig {
   sim::MemoryBudget memory;         ///< of scene, structure, image and work log together
   run::KeptItems keep;              ///< plan items to keep; no configuration key, as it changes no result
   sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
+  /// What is traced and how is that of this log, which is read in the place of the scene; null: it is traced.
+  std::shared_ptr<const LoggedFrame> log{};
 };
 
 /// The options with the frame made so small that its longer side has at most `side` pixels; a window shows
@@ -63,13 +68,10 @@ void give_memory(const sim::MemoryBudget& memory, accel::StructureOptions& optio
 /// current directory (empty) if the command line names it.
 [[nodiscard]] std::filesystem::path directory_of(const sim::Config& config, std::string_view key);
 
-/// Throws UserError naming file, line and key.
-[[nodiscard]] FrameConfig read_frame(sim::Config& config);
+/// Throws UserError naming file, line and key. For another use than timing a log is refused, and given rays.
+[[nodiscard]] FrameConfig read_frame(sim::Config& config, FrameUse use = FrameUse::timing);
 
-/// For studies, all of which are of images: refuses a frame of image.rays.
-void refuse_given_rays(const sim::Config& config, const FrameConfig& frame);
-
-/// Like read_frame, for a study of one frame: refuses several, and given rays.
-[[nodiscard]] FrameConfig read_one_frame(sim::Config& config);
+/// Like read_frame, for a study of one frame: refuses several.
+[[nodiscard]] FrameConfig read_one_frame(sim::Config& config, FrameUse use);
 
 }  // namespace marti::studies::keys

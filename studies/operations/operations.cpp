@@ -52,7 +52,7 @@ constexpr std::array<CountedWalk, 12> plans{{
 }  // namespace
 
 OperationsStudy count_operations(sim::Config& config, sim::WorkMeter* meter) {
-  const keys::FrameConfig frame = keys::read_one_frame(config);
+  const keys::FrameConfig frame = keys::read_one_frame(config, keys::FrameUse::operations);
   static_cast<void>(keys::read_machine(config));
   config.refuse_unused();
   const scenes::Scene scene = run::open_frame(frame);

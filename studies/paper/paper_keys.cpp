@@ -100,8 +100,7 @@ PaperConfig read_paper(sim::Config& config) {
       config.fail(own.key, "the study sets it itself, from " + std::string(own.from));
     }
   }
-  paper.frame = keys::read_frame(config);
-  keys::refuse_given_rays(config, paper.frame);
+  paper.frame = keys::read_frame(config, keys::FrameUse::paper);
   if (paper.frame.render.voxel_cut > 0.0) {
     config.fail("image.voxel_cut", "the study renders exact images");
   }

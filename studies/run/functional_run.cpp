@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "studies/run/prepared_frame.h"
+#include "studies/run/saved_frame.h"
 
 namespace marti::studies::run {
 
@@ -62,6 +63,9 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
 }
 
 FunctionalRun run_functional(const keys::FrameConfig& config) {
+  if (config.log != nullptr) {
+    return open_saved_frame(config);
+  }
   const PreparedFrame frame(config);
   return frame.finish(frame.trace());
 }

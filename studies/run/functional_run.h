@@ -35,9 +35,9 @@ struct FunctionalRun {
 void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& scene,
                           const accel::TriangleSet& triangles, const accel::Structure& structure);
 
-/// Opens the scene, plans what the frame does not need, builds the structure, renders and records. Throws
-/// UserError when the scene cannot be used or the frame would take more than the memory limit, which it
-/// estimates from a small rendering.
+/// Opens the scene, plans what the frame does not need, builds the structure, renders and records; or reads
+/// the log that `config` names (saved_frame.h). Throws UserError when the scene or the log cannot be used or
+/// the frame would take more than the memory limit, which it estimates from a small rendering.
 [[nodiscard]] FunctionalRun run_functional(const keys::FrameConfig& config);
 /// Like run_functional above, of the open scene that `config` names. Nothing of it is left out.
 [[nodiscard]] FunctionalRun run_functional(const keys::FrameConfig& config, const scenes::Scene& scene);

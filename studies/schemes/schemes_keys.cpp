@@ -125,7 +125,7 @@ sim::Schema schemes_schema() {
 
 SchemesConfig read_schemes(sim::Config& config) {
   SchemesConfig schemes;
-  schemes.frame = keys::read_one_frame(config);
+  schemes.frame = keys::read_one_frame(config, keys::FrameUse::schemes);
   schemes.nodes = keys::ascending<std::uint32_t>(config, "schemes.nodes");
   schemes.cell_levels = keys::ascending<std::uint32_t>(config, "schemes.cell_levels");
   schemes.cell_objects = keys::count(config, "schemes.cell_objects");

@@ -35,7 +35,9 @@ void add_image(const processors::program::Image& image, const std::string& name,
 }
 
 void add_files(const run::RunResult& result, tables::PendingFiles& files) {
-  add_image(result.functional.frame.image, "image", files);
+  if (result.frame_config.log == nullptr) {
+    add_image(result.functional.frame.image, "image", files);
+  }
   if (!result.functional.frame.hits.empty()) {
     files.write("hits.npy", hits_file(result.functional.frame, result.functional.totals.all_rays()));
   }

@@ -127,7 +127,7 @@ tables::StudyOutput run_stability(sim::Config& config, sim::WorkMeter* meter) {
 tables::StudyOutput run_stability(sim::Config& config, std::span<const StabilityCase> all,
                                   sim::WorkMeter* meter) {
   Subject subject;
-  subject.frame = keys::read_one_frame(config);
+  subject.frame = keys::read_one_frame(config, keys::FrameUse::stability);
   subject.frame.meter = meter;
   subject.machine = keys::read_machine(config);
   // What is counted or worked out from counters changes no time.

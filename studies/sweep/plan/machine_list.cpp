@@ -81,15 +81,20 @@ void MachineList::move_into(SweepPlan& plan) && {
 std::size_t MachineList::enter_frame(const ReadPoint& read) {
   // The same file name means another file in another base directory.
   const bool file = scenes::names_a_file(read.frame.scene) || !read.frame.open.rays.empty();
-  const std::string known = read.frame_digest + (file ? read.frame.open.base_directory.string() : "") +
-                            read.frame.open.rays.string();
+  const keys::LoggedFrame* const log = read.frame.log.get();
+  const std::string known =
+      read.frame_digest + (log != nullptr ? log->file.string()
+                           : file ? read.frame.open.base_directory.string() + read.frame.open.rays.string()
+                                  : "");
   if (const auto found = frame_of_digest_.find(known); found != frame_of_digest_.end()) {
     return found->second;
   }
   Digest digest;
   digest.add(std::string(host::build_of_program()) + "\n" + read.frame_digest);
   std::optional<std::uint64_t> hash;
-  if (file) {
+  if (log != nullptr) {
+    digest.add("\n" + std::to_string(log->id));
+  } else if (file) {
     const scenes::Scene scene = sim::with_places(read.config, [&] { return run::open_frame(read.frame); });
     hash = run::scene_hash(scene);
     digest.add("\n" + std::to_string(*hash) + " " + std::to_string(scenes::facts_of(scene).polygons));

@@ -19,7 +19,7 @@ namespace marti::studies::sweep {
 /// One functional run: equal values give the same image and the same work log.
 struct SweepFrame {
   /// 32 hexadecimal digits of the settings, of the program's build (program_build.h) and, where the scene is
-  /// a file or its rays are, of the scene in it.
+  /// a file, its rays are, or a log stands in its place, of what is in that.
   std::string key;
   keys::FrameConfig config;
   std::vector<sim::EffectiveValue> settings;  ///< that a frame reads, without host_machine.*

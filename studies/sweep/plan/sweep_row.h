@@ -54,7 +54,8 @@ struct FrameRow {
   bool operator==(const FrameRow&) const = default;
 };
 
-/// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h).
+/// `scene_hash` is that of the scene as opened (studies/run/scene_hash.h), or the number of the log that
+/// stands in its place.
 [[nodiscard]] FrameRow frame_row(const run::FunctionalRun& run, std::uint64_t scene_hash);
 
 }  // namespace marti::studies::sweep

@@ -16,6 +16,10 @@ namespace {
 
 FrameLog trace(const SweepFrame& frame) {
   const keys::FrameConfig& config = frame.config;
+  if (config.log != nullptr) {
+    const run::FunctionalRun run = run::run_functional(config);
+    return {run.frame.log, frame_row(run, config.log->id)};
+  }
   const scenes::Scene scene = run::open_frame(config);
   const std::uint64_t hash = run::scene_hash(scene);
   if (frame.scene_hash && *frame.scene_hash != hash) {

@@ -12,7 +12,6 @@
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "processors/program/log_rules.h"
 #include "processors/program/recorder.h"
 #include "processors/program/work_log.h"
 #include "sim/error.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 
@@ -38,7 +38,7 @@ TEST(WorkLog, CountsEveryKindOfStep) {
                  make_word(Step::leaf, 2), make_word(Step::shade, 1), make_word(Step::texel, 0), 3,
                  make_word(Step::ray, ray_operand(RayKind::shadow, 1)), make_word(Step::partial_leaf, 1), 2,
                  make_word(Step::light, 0)});
-  EXPECT_EQ(test::fault_of(log), "");
+  EXPECT_EQ(program::fault_of(log), "");
   std::vector<std::uint64_t> shades;
   const LogTotals totals = totals_of(log, &shades);
   EXPECT_EQ(shades, (std::vector<std::uint64_t>{0, 1}));
@@ -75,7 +75,7 @@ TEST(WorkLog, CountsWhatMailboxesLeftOut) {
                            3, 0b101, make_word(Step::leaf, 2), make_word(Step::partial_leaf, 1), 1,
                            make_word(Step::mailed_leaf, 1), 2, 0});
   log.mailboxes = true;
-  EXPECT_EQ(test::fault_of(log), "");
+  EXPECT_EQ(program::fault_of(log), "");
   const LogTotals totals = totals_of(log);
   EXPECT_EQ(totals.leaves, 5U);
   EXPECT_EQ(totals.tests, 3U + 2 + 0 + 1 + 0);
@@ -91,8 +91,8 @@ TEST(WorkLog, EveryFaultIsFound) {
     log.voxels = 1;
     return log;
   };
-  EXPECT_EQ(test::fault_of(log_of({make_word(Step::cut, 0), make_word(Step::shade, 2)})), "");
-  EXPECT_EQ(test::fault_of(log_of({make_word(Step::pass, 2), make_word(Step::leaf, 1)})), "");
+  EXPECT_EQ(program::fault_of(log_of({make_word(Step::cut, 0), make_word(Step::shade, 2)})), "");
+  EXPECT_EQ(program::fault_of(log_of({make_word(Step::pass, 2), make_word(Step::leaf, 1)})), "");
   const std::vector<std::vector<std::uint32_t>> bad = {
       {make_word(Step::branch, 3)},              // no such node
       {make_word(Step::branch, 1)},              // a leaf
@@ -123,9 +123,9 @@ TEST(WorkLog, EveryFaultIsFound) {
       {make_word(Step::pass, 2), make_word(Step::shade, 0)},
   };
   for (std::size_t i = 0; i < bad.size(); ++i) {
-    EXPECT_NE(test::fault_of(log_of(bad[i])), "") << i;
+    EXPECT_NE(program::fault_of(log_of(bad[i])), "") << i;
   }
-  EXPECT_NE(test::fault_of(log_of({make_word(Step::mailed_leaf, 1), 3, 5}, false)), "");
+  EXPECT_NE(program::fault_of(log_of({make_word(Step::mailed_leaf, 1), 3, 5}, false)), "");
   for (const auto& spoil :
        {+[](WorkLog& log) {
           log.rows[0].begin = {0, 2};
@@ -138,9 +138,9 @@ TEST(WorkLog, EveryFaultIsFound) {
         +[](WorkLog& log) { log.topology.nodes[2].first = 4; }, +[](WorkLog& log) { log.samples = 0; },
         +[](WorkLog& log) { log.samples = 2; }}) {
     WorkLog log = log_of({camera_ray});
-    EXPECT_EQ(test::fault_of(log), "");
+    EXPECT_EQ(program::fault_of(log), "");
     spoil(log);
-    EXPECT_NE(test::fault_of(log), "");
+    EXPECT_NE(program::fault_of(log), "");
   }
 }
 

@@ -8,12 +8,12 @@
 #include <rapidcheck/gtest.h>
 #include <set>
 
+#include "processors/program/log_rules.h"
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 
@@ -62,7 +62,7 @@ TEST_P(AnyFrames, DoNotDependOnThreadsRecordingOrStructure) {
   EXPECT_TRUE(same_rows(*one.log, *four.log));
   EXPECT_EQ(one.hit_hash, four.hit_hash);
   EXPECT_EQ(one.rays.traced, four.rays.traced);
-  EXPECT_EQ(marti::test::fault_of(*one.log), "");
+  EXPECT_EQ(program::fault_of(*one.log), "");
   EXPECT_TRUE(std::ranges::equal(totals_of(*one.log).rays, one.rays.traced));
   EXPECT_EQ(one.log->quadrics.size(), octree.scene.quadrics.size());
   EXPECT_EQ(one.log->primitives, octree.scene.triangles.size() + octree.scene.quadrics.size());
@@ -147,7 +147,7 @@ TEST_P(Frames, LogsSayWhatHappened) {
   const RenderOptions options{.width = 64, .height = 48, .max_depth = 4, .record = true};
   const Frame frame = built.render(options, 2);
   const WorkLog& log = *frame.log;
-  ASSERT_EQ(marti::test::fault_of(log), "");
+  ASSERT_EQ(program::fault_of(log), "");
   for (std::uint32_t y = 0; y < options.height; ++y) {
     for (std::uint32_t x = 0; x < options.width; ++x) {
       check_order(log.pixel(x, y), options);
@@ -269,7 +269,7 @@ RC_GTEST_PROP(Render, AnySceneGivesFiniteColoursThatNoStructureChanges, ()) {
     RC_ASSERT(brute.hit_hash == frame.hit_hash);
     RC_ASSERT(brute.rays.traced == frame.rays.traced);
     RC_ASSERT(brute.rays.hit == frame.rays.hit);
-    RC_ASSERT(marti::test::fault_of(*frame.log) == "");
+    RC_ASSERT(program::fault_of(*frame.log) == "");
     RC_ASSERT(totals_of(*frame.log).all_rays() == frame.rays.all());
   }
 }
@@ -299,7 +299,7 @@ TEST(Render, AnEmptySceneIsAllBackground) {
     for (const glm::vec3& pixel : frame.image.pixels) {
       EXPECT_EQ(pixel, glm::vec3(0.25F, 0.5F, 0.75F));
     }
-    EXPECT_EQ(marti::test::fault_of(*frame.log), "");
+    EXPECT_EQ(program::fault_of(*frame.log), "");
   }
 }
 
@@ -315,7 +315,7 @@ TEST(Render, MailboxesLeaveOutWhatTheRayHasTested) {
     EXPECT_EQ(with.image.pixels, without.image.pixels) << kind;
     EXPECT_FALSE(without.log->mailboxes);
     ASSERT_TRUE(with.log->mailboxes);
-    ASSERT_EQ(marti::test::fault_of(*with.log), "");
+    ASSERT_EQ(program::fault_of(*with.log), "");
     options.record = false;
     EXPECT_EQ(built.render(options).hit_hash, without.hit_hash) << kind;
 

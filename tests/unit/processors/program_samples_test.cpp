@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "processors/program/log_rules.h"
 #include "processors/program/sample_points.h"
 #include "processors/replay/replay.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/support/logged_samples.h"
-#include "tests/support/valid_log.h"
 #include "tests/unit/processors/program_scenes.h"
 
 namespace marti::processors {
@@ -128,7 +128,7 @@ TEST(Floats, DifferFromDoublesByRoundingInMostPixels) {
     const Frame doubles = built.render(options);
     options.floats = true;
     const Frame floats = built.render(options);
-    ASSERT_EQ(marti::test::fault_of(*floats.log), "");
+    ASSERT_EQ(program::fault_of(*floats.log), "");
     std::size_t equal = 0;
     std::size_t far = 0;
     for (std::size_t i = 0; i < floats.image.pixels.size(); ++i) {

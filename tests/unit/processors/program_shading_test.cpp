@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "processors/program/log_rules.h"
 #include "processors/program/power.h"
 #include "processors/program/shading.h"
 #include "program_scenes.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 
@@ -290,7 +290,7 @@ TEST(Shading, TheTexelUnderThePointColoursItAndIsLogged) {
       EXPECT_EQ(words.back(), x);
     }
   }
-  EXPECT_EQ(marti::test::fault_of(*frame.log), "");
+  EXPECT_EQ(program::fault_of(*frame.log), "");
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <span>
 
+#include "processors/program/log_rules.h"
 #include "processors/program/ray_tree.h"
 #include "tests/support/logged_samples.h"
 #include "tests/support/random_flow.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 
@@ -82,7 +82,7 @@ RC_GTEST_PROP(RayTree, SamplesAreAPixelsWordsFromCameraRayToCameraRay, ()) {
   const auto samples = static_cast<std::uint32_t>(test::pick(random, 1, 6));
   WorkLog log = test::random_ray_trees(random, 4, 2, 6, 3, samples);
   log.lights = 1;
-  RC_ASSERT(test::fault_of(log) == "");
+  RC_ASSERT(program::fault_of(log) == "");
   for (std::uint32_t x = 0; x < 4; ++x) {
     std::span<const std::uint32_t> left = log.pixel(x, 1);
     for (const auto& expected : test::samples_of_pixel(log, x, 1)) {

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "accel/voxel_cover.h"
+#include "processors/program/log_rules.h"
 #include "processors/program/recorder.h"
 #include "processors/program/tracer.h"
 #include "processors/program/voxel_average.h"
@@ -16,7 +17,6 @@
 #include "program_scenes.h"
 #include "scenes/procedural.h"
 #include "sim/error.h"
-#include "tests/support/valid_log.h"
 
 namespace marti::processors {
 
@@ -196,7 +196,7 @@ RC_GTEST_PROP(VoxelCut, ABoxFarBelowAPixelHasItsAverageColour, ()) {
   options.record = true;
   const Frame frame = Built(scene, "octree").render(options);
   RC_ASSERT(frame.rays.voxels[0] == 1U);
-  RC_ASSERT(marti::test::fault_of(*frame.log) == "");
+  RC_ASSERT(program::fault_of(*frame.log) == "");
   const double sides = 2.0 * e.y * e.z;
   const double others = 2.0 * (e.x * e.y + e.x * e.z);
   const scenes::Material& a = scene.materials[0];
@@ -260,7 +260,7 @@ TEST_P(CutFrames, DoNotDependOnThreadsOrRecordingAndKeepTheLogsRules) {
   for (std::size_t y = 0; y < one.log->rows.size(); ++y) {
     ASSERT_EQ(one.log->rows[y].words, four.log->rows[y].words);
   }
-  ASSERT_EQ(marti::test::fault_of(*one.log), "");
+  ASSERT_EQ(program::fault_of(*one.log), "");
   const LogTotals totals = totals_of(*one.log);
   EXPECT_GT(totals.cuts, 0U);
   EXPECT_EQ(totals.cuts, one.rays.voxels[0] + one.rays.voxels[2] + one.rays.voxels[3]);
