@@ -74,7 +74,7 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
     homes += config.clusters * memory::network_bytes(config.network, config.nodes) +
              config.all_nodes() * bytes_a_ray * (1 + std::uint64_t{queue});
   }
-  constexpr std::uint64_t bytes_a_context = sizeof(walk::Cursor) + 64 + sim::EventQueue::bytes_an_event;
+  constexpr std::uint64_t bytes_a_context = sizeof(walk::Cursor) + 96 + sim::EventQueue::bytes_an_event;
   constexpr std::uint64_t bytes_a_port = 80;
   // Nodes that are configured with several contexts keep these tables even where only one of each gets a
   // packet.

@@ -107,10 +107,12 @@ std::string name_of(const LoggedFrame& log) { return "the log " + sim::shown(log
 void take_settings(sim::Config& config, const OpenedLog& log) {
   const sim::Schema& schema = config.schema();
   const std::string of_log = name_of(*log.frame);
+  // A log that the command names takes the place of the scene that the file describes.
+  const bool in_place = config.assigned(log_key);
   for (const auto& [name, values] : log.settings) {
     const std::size_t index = *schema.find(name);
     const sim::Key& key = schema.keys()[index];
-    if (!config.given(key.name)) {
+    if (!config.given(key.name) || (in_place && !config.assigned(key.name))) {
       config.set({index, values, 0, of_log + ": " + name + " = " + print_values(key, values)});
     } else if (!std::ranges::equal(config.values_at(index), values)) {
       config.fail(name, of_log + " was made with " + print_values(key, values) +

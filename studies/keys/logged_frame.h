@@ -23,7 +23,8 @@ enum class FrameUse : std::uint8_t { timing, operations, paper, frames, schemes,
 
 /// The log that `scene.log` names; null where it is not given. Gives each key that decides a scene, a
 /// structure or an image the value that the log was made with. Throws UserError, naming file, line and key,
-/// for a file that is no log, for a key that has another value, and for a use other than timing.
+/// for a file that is no log, for a key that has another value, and for a use other than timing. Where the
+/// command names the log, keys of the configuration's file may have other values, and do not count.
 [[nodiscard]] std::shared_ptr<const LoggedFrame> read_log(sim::Config& config, FrameUse use);
 
 /// Throws UserError unless the log has what the machine's nodes need, as `render` says; then sets `render` to

@@ -77,6 +77,11 @@ TEST_F(SavedLog, StandsInThePlaceOfTheScene) {
                  "has no effect with structure.kind");
   expect_refused("sweep " + quoted(file("log.toml")) + " --axis image.width=20,30 -o " + quoted(file("w")),
                  "was made with 20");
+  // A command that names the log takes it in the place of what the file describes.
+  EXPECT_EQ(printed("run " + quoted(file("wrong.toml")) + from_log()),
+            printed("run " + quoted(file("log.toml"))));
+  expect_refused("run " + quoted(file("wrong.toml")) + from_log() + " --set image.width=21",
+                 "was made with 20");
 }
 
 TEST_F(SavedLog, ServesEveryCommandThatTimesMachines) {

@@ -379,7 +379,8 @@ TEST(WhatHelps, NamesSomethingWhereItCanReplayOneStep) {
   for (std::size_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     test::Random random(seed);
-    const test::TimedCase made = makers[seed % makers.size()](random);
+    test::TimedCase made = makers[seed % makers.size()](random);
+    test::use_default_interleave(made.machine);
     sim::Config config = test::configuration_of(test::assignments_of(made.machine));
     const MachineConfig machine = read_machine(config);
     const MachineResult result = processors::replay::replay(made.log, machine);
