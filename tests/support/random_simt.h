@@ -76,7 +76,7 @@ inline processors::machine::MachineConfig random_simt(Random& random,
   if (treelets && random() % 3 == 0) {
     rt.scheduler = RtScheduler::treelet;
   }
-  if (rt.warps > 0 && log.has_meets() && random() % 2 == 0) {
+  if (rt.warps > 0 && log.has_meets() && random() % 3 == 0) {
     rt.share = RtShare::warp;
   }
   if (rt.warps > 0 && machine.placement != Placement::replicated) {
