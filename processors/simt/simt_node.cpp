@@ -67,6 +67,7 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
       prefetches_(shared.input.config.prefetch.queue),
       stacks_(shared.input.config.prefetch.stack > 0 || shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
       spilled_stacks_(shared.input.config.rt.stack > 0 ? lanes_.size() : 0),
+      shares_(shared.input.config.rt.share != machine::RtShare::none),
       lane_treelets_(shared.treelets ? lanes_.size() : 0) {
   if (shares()) {
     make_room_to_share();
@@ -74,10 +75,14 @@ SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatisti
   if (shared.input.observer != nullptr && shared.input.observer->hears_lanes()) {
     lane_since_.resize(lanes_.size());
   }
+  told_ = shared.listener != nullptr || !lane_since_.empty();
 }
 
 // Tells what lanes have done that leave a state.
 void SimtNode::tell_of_lanes(std::uint32_t warp, Lanes lanes, LaneState from) {
+  if (lane_since_.empty()) {
+    return;
+  }
   for_each_lane(lanes, [&](std::uint32_t member) {
     const std::int64_t since = std::exchange(lane_since_[home_of(warp, member)], cycle_);
     if (since != cycle_ && from != LaneState::held && from != LaneState::empty) {
@@ -262,6 +267,20 @@ void SimtNode::look_up(std::int64_t cycle) {
   }
 }
 
+// Tells those who hear references, and lanes.
+void SimtNode::tell_of_look_up(const LineRead& line, bool hit) {
+  const machine::MachineConfig& config = shared_.input.config;
+  if (shared_.listener != nullptr) {
+    shared_.listener->referred(
+        {config.clock.cycles(cycle_), number_, memory::Address{line.unit} << shared_.unit_shift,
+         config.reference_bytes(), false},
+        line.kind, hit);
+  }
+  if (!hit && !lane_since_.empty()) {
+    shared_.input.observer->missed(number_, 1, pixel_at(line.lane));
+  }
+}
+
 bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
   const std::uint64_t key = shared_.caches.key(number_, line.kind, line.unit);
   const auto note = [&](bool hit, bool joined) {
@@ -276,14 +295,8 @@ bool SimtNode::look_up_line(std::uint32_t waiter, const LineRead& line) {
       full_from_ = no_cycle;
     }
     prefetches_.look_up(key, hit, joined);
-    if (shared_.listener != nullptr) {
-      const std::uint32_t bytes = shared_.input.config.reference_bytes();
-      shared_.listener->referred({shared_.input.config.clock.cycles(cycle_), number_,
-                                  memory::Address{line.unit} << shared_.unit_shift, bytes, false},
-                                 line.kind, hit);
-    }
-    if (!hit && !lane_since_.empty()) {
-      shared_.input.observer->missed(number_, 1, pixel_at(line.lane));
+    if (told_) [[unlikely]] {
+      tell_of_look_up(line, hit);
     }
   };
   if (const std::optional<std::uint32_t> under_way = registers_.find(key)) {

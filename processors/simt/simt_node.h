@@ -210,7 +210,7 @@ class SimtNode {
   void write_stacks();
 
   // shared_rays.cpp: lanes that help each other.
-  [[nodiscard]] bool shares() const { return shared_.input.config.rt.share != machine::RtShare::none; }
+  [[nodiscard]] bool shares() const { return shares_; }
   // What a lane of the unit is that has no work.
   [[nodiscard]] LaneState without_work(std::uint32_t warp, std::uint32_t number) const {
     const bool pixel = is_group(warp) || (warps_[warp].pixels >> number & 1U) != 0;
@@ -226,7 +226,7 @@ class SimtNode {
   // Counts lanes of a warp, or of a group, as being in another state.
   void move(std::uint32_t warp, Lanes lanes, LaneState from, LaneState to) {
     time_.move_lanes(from, to, count(lanes));
-    if (!lane_since_.empty()) {
+    if (told_) [[unlikely]] {
       tell_of_lanes(warp, lanes, from);
     }
   }
@@ -246,6 +246,7 @@ class SimtNode {
   }
 
   // Lines.
+  [[gnu::noinline]] void tell_of_look_up(const LineRead& line, bool hit);
   bool look_up_line(std::uint32_t waiter, const LineRead& line);
   void look_up_prefetch();
   std::uint32_t ask_for_line(LineRegisters::Key key, const LineRead& line, bool prefetched);
@@ -347,6 +348,7 @@ class SimtNode {
   std::vector<Spill> spills_;                 // of this cycle
 
   // Lanes that help each other; empty where they do not.
+  bool shares_;
   std::vector<SharedLane> shared_lanes_;  // of each lane of each warp
   std::vector<SharedRay> shared_rays_;    // of each lane of each warp, its ray
   struct FoundHit {
@@ -357,6 +359,7 @@ class SimtNode {
 
   // Since when each lane of each warp is in its state; empty where nobody hears of lanes.
   std::vector<std::int64_t> lane_since_;
+  bool told_ = false;  // somebody hears of lanes or references
 
   // Treelets.
   std::vector<std::uint32_t> lane_treelets_;  // of the record that each lane of each warp wants or has
