@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/cli/shell.h"
+#include "tests/support/ray_file.h"
 #include "tests/support/temporary_directory.h"
 
 namespace marti::test {
@@ -82,6 +83,18 @@ TEST_F(SavedLog, StandsInThePlaceOfTheScene) {
             printed("run " + quoted(file("log.toml"))));
   expect_refused("run " + quoted(file("wrong.toml")) + from_log() + " --set image.width=21",
                  "was made with 20");
+}
+
+// The rays are in the log: their file is not needed any more.
+TEST_F(SavedLog, OfGivenRaysNeedsNoFileOfThem) {
+  write(file("rays.npy"), ray_file({0.0, 0.0, 9.0, 0.0, 0.0, 0.0, -1.0, 1e9,  //
+                                    0.1, 0.2, 9.0, 0.0, 0.0, 0.0, -2.0, 1e9}));
+  const std::string run = "run " + shipped("marti.toml") + " --no-what-helps";
+  const nlohmann::json of_rays =
+      printed(run + " --set scene.source=balls:1 --set image.integrator=rays --set image.rays=" +
+              quoted(file("rays.npy")) + " --save-log " + quoted(log_));
+  fs::remove(file("rays.npy"));
+  EXPECT_EQ(of_rays, printed(run + from_log()));
 }
 
 TEST_F(SavedLog, ServesEveryCommandThatTimesMachines) {
