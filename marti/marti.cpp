@@ -286,6 +286,9 @@ std::string Result::ray_hits() const {
     if (!data_->settings.contains("image.rays")) {
       throw sim::UserError("only image.integrator = \"rays\" says what its rays hit");
     }
+    if (data_->live && data_->live->frame_config.log != nullptr) {
+      throw sim::UserError("a frame from a log (scene.log) does not know what its rays hit");
+    }
     return data_->live
                ? show::hits_file(data_->live->functional.frame, data_->live->functional.totals.all_rays())
                : sim::read_file(data_->directory / "hits.npy", std::numeric_limits<std::int64_t>::max());

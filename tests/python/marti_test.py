@@ -165,6 +165,14 @@ class Runs(unittest.TestCase):
                 if array.shape[1] == 9:
                     self.assertFalse((array[found, 8] == 1).any())
                     self.assertGreater((hits["primitive"] == -2).sum(), 10)
+        with tempfile.TemporaryDirectory() as directory:
+            file, log = pathlib.Path(directory, "dumped.npy"), pathlib.Path(directory, "a.log")
+            numpy.save(file, rays)
+            of_file = {**scene, "image.integrator": "rays", "image.rays": file}
+            program("run", self.config, "--save-log", log, *given(of_file))
+            logged = marti.run(self.config, {"scene.log": log})
+            with self.assertRaisesRegex(marti.Error, "does not know what its rays hit"):
+                logged.ray_hits
         rays[17, 4:7] = 0
         with self.assertRaisesRegex(marti.Error, "ray 17 .*: its direction is 0") as caught:
             marti.run(self.config, scene, rays=rays)
