@@ -37,6 +37,10 @@ namespace marti::accel {
 enum class BspWalk : std::uint8_t { recursive, push_point };
 inline constexpr std::array<std::string_view, 2> bsp_walk_names = {"recursive", "push_point"};
 
+[[nodiscard]] constexpr Traversal traversal_of(BspWalk walk) {
+  return walk == BspWalk::push_point ? Traversal::bsp_push_point : Traversal::bsp_recursive;
+}
+
 struct BspOptions {
   /// A node that lists more than this many triangles is split, unless it is at the deepest level. At least 1.
   std::uint32_t max_objects = 8;
@@ -67,9 +71,7 @@ class Bsp : public Queries<Bsp> {
   [[nodiscard]] const BspOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] double delta() const { return frame_.delta; }
-  [[nodiscard]] Traversal traversal() const {
-    return options_.walk == BspWalk::push_point ? Traversal::bsp_push_point : Traversal::bsp_recursive;
-  }
+  [[nodiscard]] Traversal traversal() const { return traversal_of(options_.walk); }
   /// levels()[i] is level i + 1 of this tree.
   [[nodiscard]] const std::vector<LevelStatistics>& levels() const { return levels_; }
 

@@ -199,22 +199,6 @@ void Bvh::make_records(sim::LargeVector<Node>& records) {
   });
 }
 
-Traversal Bvh::traversal() const {
-  switch (options_.node) {
-    case BvhNodeKind::two:
-      return Traversal::bvh_two;
-    case BvhNodeKind::four:
-      return Traversal::bvh_four;
-    case BvhNodeKind::six:
-      return Traversal::bvh_six;
-    case BvhNodeKind::eight:
-      return Traversal::bvh_eight;
-    case BvhNodeKind::eight_quantised:
-      break;
-  }
-  return Traversal::bvh_eight_quantised;
-}
-
 std::uint64_t Bvh::walk_bytes() const {
   return two_.size() * sizeof(BvhNode<2>) + four_.size() * sizeof(BvhNode<4>) +
          six_.size() * sizeof(BvhSixNode) + eight_.size() * sizeof(BvhNode<8>) +

@@ -39,7 +39,7 @@ class Bvh : public Queries<Bvh> {
   [[nodiscard]] const Bvh& bvh() const { return *this; }
   [[nodiscard]] const BvhOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
-  [[nodiscard]] Traversal traversal() const;
+  [[nodiscard]] Traversal traversal() const { return traversal_of(options_.node); }
 
   /// The expected cost of a random ray that meets the root's box: the sum over the branches of the chance to
   /// meet their boxes, plus that over the leaves times their numbers of primitives. A chance is the surface

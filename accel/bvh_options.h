@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "accel/traversal.h"
 #include "sim/memory_budget.h"
 
 namespace marti::accel {
@@ -12,6 +13,13 @@ namespace marti::accel {
 /// How many children a branch has at most, and how their boxes are kept (bvh_nodes.h).
 enum class BvhNodeKind : std::uint8_t { two, four, six, eight, eight_quantised };
 inline constexpr std::array<std::string_view, 5> bvh_node_names = {"2", "4", "6", "8", "8_quantised"};
+
+/// The walk by such nodes.
+[[nodiscard]] constexpr Traversal traversal_of(BvhNodeKind kind) {
+  constexpr std::array<Traversal, 5> walks = {Traversal::bvh_two, Traversal::bvh_four, Traversal::bvh_six,
+                                              Traversal::bvh_eight, Traversal::bvh_eight_quantised};
+  return walks[static_cast<std::size_t>(kind)];
+}
 
 /// Bytes of a branch's record. A leaf has none: its parent's record says where its list is.
 [[nodiscard]] constexpr std::uint32_t bvh_record_bytes(BvhNodeKind kind) {

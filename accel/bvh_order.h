@@ -88,7 +88,7 @@ class FarBoxes {
   double limit_ = 0.0;
 };
 
-/// Fills `met` with the children of a branch whose boxes the ray meets, the one that it enters first first.
+/// Fills `met` with the children of a branch whose boxes the ray meets, in the order in which it enters them.
 /// Returns how many they are.
 template <class Node, class Boxes>
 std::size_t met_children(const BvhView<Node>& view, std::uint32_t record, const Boxes& boxes,

@@ -20,7 +20,6 @@ namespace marti::processors::program {
 namespace {
 
 constexpr std::uint32_t no_node = 0xffffffffU;
-constexpr std::uint32_t max_image_side = 32768;  // RenderOptions::width
 /// Texels of all textures together: no scene has as many, and sums of their bytes fit.
 constexpr std::uint64_t most_texels = std::uint64_t{1} << 48U;
 

@@ -91,8 +91,12 @@ class RowRecorder {
   }
   void begin_pixel() {
     begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
-    rays_.begin_pixel();
-    meets_.begin_pixel();
+    if (grid_ != nullptr) {
+      rays_.begin_pixel();
+    }
+    if (meeting_ != nullptr) {
+      meets_.begin_pixel();
+    }
   }
 
   void branch(std::uint32_t node) { put(make_word(Step::branch, node)); }

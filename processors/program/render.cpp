@@ -15,8 +15,6 @@ namespace marti::processors::program {
 
 namespace {
 
-constexpr std::uint32_t max_size = 32768;
-
 void check_options(const RenderOptions& options) {
   const auto in_range = [](const char* name, std::uint32_t value, std::uint32_t low, std::uint32_t high) {
     if (value < low || value > high) {
@@ -24,11 +22,11 @@ void check_options(const RenderOptions& options) {
                            "; it must be from " + std::to_string(low) + " to " + std::to_string(high));
     }
   };
-  in_range("width", options.width, 1, max_size);
-  in_range("height", options.height, 1, max_size);
+  in_range("width", options.width, 1, max_image_side);
+  in_range("height", options.height, 1, max_image_side);
   if (const std::optional<Window>& window = options.window) {
-    in_range("image_width", window->image_width, 1, max_size);
-    in_range("image_height", window->image_height, 1, max_size);
+    in_range("image_width", window->image_width, 1, max_image_side);
+    in_range("image_height", window->image_height, 1, max_image_side);
     sim::ensure(window->left <= window->image_width && window->top <= window->image_height &&
                     options.width <= window->image_width - window->left &&
                     options.height <= window->image_height - window->top,

@@ -24,6 +24,9 @@ class TriangleSet;
 
 namespace marti::processors::program {
 
+/// The most columns, and rows, of an image.
+inline constexpr std::uint32_t max_image_side = 32768;
+
 /// The largest RenderOptions::max_depth.
 inline constexpr std::uint32_t max_ray_depth = 64;
 
@@ -34,15 +37,15 @@ struct Frame;
 
 /// A frame may be a window of an image: its pixel (0, 0) is then the image's pixel (left, top).
 struct Window {
-  std::uint32_t image_width = 0;   ///< of the image: at least left + the frame's width, at most 32768
-  std::uint32_t image_height = 0;  ///< at least top + the frame's height, at most 32768
+  std::uint32_t image_width = 0;  ///< of the image: at least left + the frame's width, at most max_image_side
+  std::uint32_t image_height = 0;  ///< at least top + the frame's height, at most max_image_side
   std::uint32_t left = 0;
   std::uint32_t top = 0;
 };
 
 struct RenderOptions {
-  std::uint32_t width = 512;   ///< pixels of the frame, 1 to 32768
-  std::uint32_t height = 512;  ///< pixels of the frame, 1 to 32768
+  std::uint32_t width = 512;   ///< pixels of the frame, 1 to max_image_side
+  std::uint32_t height = 512;  ///< pixels of the frame, 1 to max_image_side
   /// If given, each pixel of the frame has the rays, random numbers and colour, bit for bit, of the image's
   /// pixel in its place; else the frame is the whole image.
   std::optional<Window> window = std::nullopt;

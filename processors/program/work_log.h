@@ -141,7 +141,7 @@ struct LogRow : RowWords {
   RowWords rays;     ///< a word for each ray (ray_grid.h)
   RowWords meets;    ///< what each ray meets (accel/bvh_meets.h)
 
-  [[nodiscard]] std::array<const RowWords*, 4> all() const { return {this, &entered, &rays, &meets}; }
+  [[nodiscard]] std::array<const RowWords*, 3> beside() const { return {&entered, &rays, &meets}; }
 };
 
 /// How much a log holds; also the denominators of bytes per ray and steps per ray.
@@ -169,8 +169,8 @@ struct LogTotals {
   }
 };
 
-/// A whole frame's log with the tree it refers to. Immutable once recorded; shared read-only by replays.
-struct WorkLog {
+/// What a log says of its frame and of the database, with the tree that its steps refer to.
+struct LogFacts {
   accel::Traversal traversal = accel::Traversal::octree;   ///< the walk that made it
   Integrator integrator = Integrator::whitted;             ///< the program that made it
   accel::WalkOrder order = accel::WalkOrder::depth_first;  ///< in which rays took nodes
@@ -189,7 +189,11 @@ struct WorkLog {
   /// last.
   std::uint32_t lights = 0;
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end
-  std::vector<LogRow> rows;                  ///< `height` of them, from the top
+};
+
+/// A whole frame's log. Immutable once recorded; shared read-only by replays.
+struct WorkLog : LogFacts {
+  std::vector<LogRow> rows;  ///< `height` of them, from the top
 
   /// Whether it has words beside the steps.
   [[nodiscard]] bool has(RowWords LogRow::*beside) const {

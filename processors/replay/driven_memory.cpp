@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "processors/node/memory_system.h"
 #include "processors/replay/replay_parts.h"
+#include "processors/walk/lines_under_way.h"
 #include "processors/walk/node_caches.h"
 #include "processors/walk/second_level.h"
 #include "sim/engine.h"
@@ -21,79 +21,62 @@ namespace {
 // Requests are made after the replies of an instant and before the memory's own events, as nodes make them.
 enum class DrivenEvent : std::uint8_t { freed_read, freed_write, reply, ask, memory };
 
-// The private caches of all nodes, and the lines that are on their way to them.
+// The private caches of all nodes, and the lines that are on their way to them, each brought by a port.
 class DrivenCaches {
  public:
-  explicit DrivenCaches(const machine::MachineConfig& config)
+  DrivenCaches(const machine::MachineConfig& config, std::uint32_t ports)
       : line_shift_(static_cast<unsigned>(std::countr_zero(config.cache.cache.line))),
         hit_ticks_(config.clock.cycles(config.cache.hit_cycles)),
         tags_(config),
         second_level_(config),
-        lines_(config.nodes) {}
+        lines_(config.nodes),
+        done_(ports),
+        waiting_(ports) {}
 
-  /// A line on its way, by its cache and number.
-  using Key = std::uint64_t;
-  static constexpr sim::Ticks not_known = std::numeric_limits<sim::Ticks>::max();
-
-  /// Looks a read up that port `port` makes at `now`; counts it. Returns when its data are there; not_known
-  /// if the line is on its way: then arrives() says so. Nothing: the line has to be asked for, as `key`.
+  /// Looks a read up that a port makes at `now`; counts it. Returns when its data are there; walk::never if
+  /// the line is on its way: then arrives() says so. Nothing: the port has to ask for the line.
   std::optional<sim::Ticks> read(const DrivenRequest& request, std::uint32_t port, sim::Ticks now,
-                                 cost::ReferenceCounts& counts, Key& key) {
+                                 cost::ReferenceCounts& counts) {
     const walk::AnyCaches::View view = tags_.view(request.node);
     const auto line = static_cast<std::uint32_t>(request.address >> line_shift_);
-    key = Key{view.cache_of(request.kind)} << 32U | line;
-    std::unordered_map<Key, Coming>& coming = lines_[request.node].coming;
+    const auto key = walk::LinesUnderWay::Key{view.cache_of(request.kind)} << 32U | line;
+    walk::LinesUnderWay& lines = lines_[request.node];
     const bool held = view.access(request.kind, line);
-    const auto found = coming.find(key);
-    const bool under_way = found != coming.end() && found->second.there > now;
+    const std::uint32_t brings = lines.find(key, now);
+    const bool under_way = brings != walk::LinesUnderWay::none;
     ++(held || under_way ? counts.hits : counts.misses)[static_cast<std::size_t>(request.kind)];
-    if (under_way) {
-      if (found->second.there == not_known) {
-        found->second.waiting.push_back(port);
-      }
-      return std::max(found->second.there, sim::add_ticks(now, hit_ticks_));
+    if (under_way && done_[brings] == walk::never) {
+      waiting_[brings].push_back(port);
+      return walk::never;
     }
-    if (held) {
-      return sim::add_ticks(now, hit_ticks_);
+    if (held || under_way) {
+      const sim::Ticks hit = sim::add_ticks(now, hit_ticks_);
+      return under_way ? std::max(done_[brings], hit) : hit;
     }
-    forget_arrived(lines_[request.node], now);
+    lines.begin(key, port, now);
+    done_[port] = walk::never;
     if (const std::optional<sim::Ticks> hit = second_level_.hit(request.node, line)) {
-      const sim::Ticks there = sim::add_ticks(now, *hit);
-      coming[key] = {there, {}};
-      return there;
+      (void)arrives(request.node, port, sim::add_ticks(now, *hit));
+      return done_[port];
     }
-    coming[key] = {};
     return std::nullopt;
   }
-  /// The line that was asked for is there at `done`. Returns the ports that have waited for it.
-  std::vector<std::uint32_t> arrives(std::uint32_t node, Key key, sim::Ticks done) {
-    Coming& line = lines_[node].coming.at(key);
-    line.there = done;
-    return std::exchange(line.waiting, {});
+  /// The line that a port has asked for is there at `done`. Returns the ports that have waited for it.
+  std::vector<std::uint32_t> arrives(std::uint32_t node, std::uint32_t port, sim::Ticks done) {
+    lines_[node].arrives(port, done);
+    done_[port] = done;
+    return std::exchange(waiting_[port], {});
   }
   [[nodiscard]] const walk::PrivateSecondLevel& second_level() const { return second_level_; }
 
  private:
-  struct Coming {
-    sim::Ticks there = not_known;
-    std::vector<std::uint32_t> waiting{};
-  };
-  struct Lines {
-    std::unordered_map<Key, Coming> coming;
-    std::size_t most = 64;  // before those that have arrived are forgotten
-  };
-  static void forget_arrived(Lines& lines, sim::Ticks now) {
-    if (lines.coming.size() >= lines.most) {
-      std::erase_if(lines.coming, [&](const auto& line) { return line.second.there <= now; });
-      lines.most = std::max<std::size_t>(64, 2 * lines.coming.size());
-    }
-  }
-
   unsigned line_shift_;
   sim::Ticks hit_ticks_;
   walk::AnyCaches tags_;
   walk::PrivateSecondLevel second_level_;
-  std::vector<Lines> lines_;  // of each node
+  std::vector<walk::LinesUnderWay> lines_;           // of each node
+  std::vector<sim::Ticks> done_;                     // when the line of each port is there
+  std::vector<std::vector<std::uint32_t>> waiting_;  // for the line of each port
 };
 
 class Driver final : public memory::InterconnectClient, public sim::EventHandler {
@@ -106,12 +89,11 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
         free_reads_(config.nodes),
         writes_(config.nodes),
         came_(ports_),
-        key_(options.caches ? ports_ : 0),
         line_bytes_(config.reference_bytes()),
         memory_(node::make_memory_system(config, {engine_, *this, class_of(DrivenEvent::reply), 0, ports_,
                                                   class_of(DrivenEvent::memory), true})) {
     if (options.caches) {
-      caches_.emplace(config);
+      caches_.emplace(config, ports_);
     }
     for (std::uint32_t port = ports_; port-- > 0;) {
       free_reads_[port / options.outstanding].push_back(port);
@@ -164,8 +146,7 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
   void read_done(std::uint32_t port, const memory::Service& service) override {
     finish_read(port, service.done);
     if (caches_) {
-      for (const std::uint32_t waiting :
-           caches_->arrives(port / options_.outstanding, key_[port], service.done)) {
+      for (const std::uint32_t waiting : caches_->arrives(port / options_.outstanding, port, service.done)) {
         finish_read(waiting, service.done);
       }
     }
@@ -227,11 +208,10 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
       memory_->read({port, request_.address, request_.bytes});
       return;
     }
-    const std::optional<sim::Ticks> there =
-        caches_->read(request_, port, engine_.now(), result_.references, key_[port]);
+    const std::optional<sim::Ticks> there = caches_->read(request_, port, engine_.now(), result_.references);
     if (!there) {
       memory_->read({port, request_.address / line_bytes_ * line_bytes_, line_bytes_});
-    } else if (*there != DrivenCaches::not_known) {
+    } else if (*there != walk::never) {
       finish_read(port, *there);
     }
   }
@@ -244,7 +224,6 @@ class Driver final : public memory::InterconnectClient, public sim::EventHandler
   std::vector<std::vector<std::uint32_t>> free_reads_;  // of each node, its ports that read nothing
   std::vector<std::uint32_t> writes_;                   // of each node, under way
   std::vector<sim::Ticks> came_;                        // of the read of each port
-  std::vector<DrivenCaches::Key> key_;                  // of the line that each port asks for
   std::uint32_t line_bytes_;
   std::optional<DrivenCaches> caches_;
   std::unique_ptr<memory::Interconnect> memory_;

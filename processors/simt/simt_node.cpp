@@ -31,9 +31,7 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
   for (std::size_t step = 0; step < round_steps; ++step) {
     round_cycles[step] = of_round[step] / period;
   }
-  if (replay.observer != nullptr && replay.observer->hears_references()) {
-    listener = replay.observer;
-  }
+  listener = walk::hears_references(replay) ? replay.observer : nullptr;
   if (replay.config.count.any()) {
     counting.emplace(replay.config, walk::memory_lines(replay.config, replay.layout, nullptr));
   }

@@ -12,9 +12,6 @@
 
 namespace marti::processors::walk {
 
-[[nodiscard]] inline bool hears_references(const ReplayInput& input) {
-  return input.observer != nullptr && input.observer->hears_references();
-}
 /// Whether nodes have to have such caches.
 [[nodiscard]] inline bool needs_counted_caches(const ReplayInput& input) {
   return input.config.count.any() || hears_references(input);

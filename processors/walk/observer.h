@@ -7,8 +7,9 @@
 //     frame; pieces of no length may be left out. Nodes come in any order.
 //   - `missed` for the cache misses of a pixel, at the latest when the pixel or ray is done with.
 //   - `began_packet` when a node begins a packet that the host gave it, by schemes that have packets.
-//   - `lane_spent` by SIMT nodes, for those who hear lanes: their `spent` and `missed` name no pixel and are
-//     for all lanes.
+//   - `lane_spent` by SIMT nodes, for those who hear lanes: what such a node spends is for many pixels, so
+//   that
+//     `spent` names none, and only those who hear lanes are told of its misses.
 //   - `requested` by the memory system (replay_parts.h), for those who hear requests.
 //   - `referred` by the caches of nodes, for those who hear references.
 //   - `resumed_packet` when a node with several contexts goes back to a packet it has begun before.
@@ -102,6 +103,10 @@ class Observer {
   /// The frame took until `time`; called last.
   virtual void end(sim::Ticks /*time*/) {}
 };
+
+[[nodiscard]] inline bool hears_references(const ReplayInput& input) {
+  return input.observer != nullptr && input.observer->hears_references();
+}
 
 /// Reports the pieces of a read that was asked for at `from`. Only the lengths of a read's four parts are
 /// known: they are reported in the order waiting for the interconnect, waiting for the bank, bank, transfer.

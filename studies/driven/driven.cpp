@@ -17,6 +17,7 @@
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/record_keys.h"
+#include "studies/keys/setting_value.h"
 #include "studies/run/run_result.h"
 #include "studies/run/trace/request_format.h"
 #include "studies/show/result_parts.h"
@@ -266,11 +267,8 @@ std::vector<std::vector<sim::Setting>> settings_of(const sim::Config& config,
   return points;
 }
 
-// Without the quotation marks of a text.
 std::string shown_setting(const sim::Schema& schema, const sim::Setting& setting) {
-  std::string text = sim::print_values(schema.keys()[setting.key], setting.values);
-  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
-                                                                      : text;
+  return keys::plain_setting(sim::print_values(schema.keys()[setting.key], setting.values));
 }
 
 tables::Table table_of(const sim::Schema& schema, const std::vector<std::vector<sim::Setting>>& points,
@@ -324,18 +322,20 @@ std::string drive(sim::Config& config, const std::filesystem::path& trace, const
   }
   const std::vector<std::vector<sim::Setting>> points = settings_of(config, choices.axes);
   std::vector<Served> all;
-  ordered_json array = ordered_json::array();
   for (const std::vector<sim::Setting>& point : points) {
     sim::Config of_point = config.with(point);
     all.push_back(sim::with_places(of_point, [&] { return serve(of_point, trace, choices, meter); }));
-    ordered_json json = {{"settings", ordered_json::object()}};
-    for (const sim::Setting& setting : point) {
-      json["settings"][config.schema().keys()[setting.key].name] = shown_setting(config.schema(), setting);
-    }
-    json.update(json_of(all.back(), name));
-    array.push_back(std::move(json));
   }
   if (choices.json) {
+    ordered_json array = ordered_json::array();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      ordered_json json = {{"settings", ordered_json::object()}};
+      for (const sim::Setting& setting : points[i]) {
+        json["settings"][config.schema().keys()[setting.key].name] = shown_setting(config.schema(), setting);
+      }
+      json.update(json_of(all[i], name));
+      array.push_back(std::move(json));
+    }
     return tables::json_text(array);
   }
   const auto least = std::ranges::min_element(all, {}, &Served::mean_latency);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "processors/program/recorder.h"
 #include "processors/program/work_log.h"
 
 namespace marti::studies::estimate {
@@ -70,19 +71,19 @@ namespace {
 processors::program::WorkLog part_of(const processors::program::WorkLog& whole,
                                      const processors::program::PixelSet& only,
                                      const processors::program::WorkLog* before) {
-  processors::program::WorkLog part = whole;
+  const processors::program::LogFacts& facts = whole;
+  processors::program::WorkLog part{facts, {}};
+  part.rows.resize(whole.height);
+  processors::program::RowRecorder recorder;
   for (std::uint32_t y = 0; y < whole.height; ++y) {
-    processors::program::LogRow& row = part.rows[y];
-    row = {};
-    row.begin.reserve(std::size_t{whole.width} + 1);
+    recorder.begin_row(whole.width);
     for (std::uint32_t x = 0; x < whole.width; ++x) {
-      row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
-      const std::span<const std::uint32_t> pixel = only.has(x, y)      ? whole.pixel(x, y)
-                                                   : before != nullptr ? before->pixel(x, y)
-                                                                       : std::span<const std::uint32_t>();
-      row.words.insert(row.words.end(), pixel.begin(), pixel.end());
+      recorder.begin_pixel();
+      if (const processors::program::WorkLog* const from = only.has(x, y) ? &whole : before) {
+        recorder.copy(from->rows[y], x);
+      }
     }
-    row.begin.push_back(static_cast<std::uint32_t>(row.words.size()));
+    recorder.end_row(part.rows[y]);
   }
   return part;
 }

@@ -10,7 +10,6 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -86,10 +85,7 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
 // What the frame depends on if it is for SIMT nodes and of a bvh. All machines that are tried on its log may
 // prefetch what waits on stacks then.
 void read_for_units(sim::Config& config, FrameConfig& frame) {
-  const auto value = [&](std::string_view key) -> std::string {
-    const std::optional<std::size_t> index = config.schema().find(key);
-    return index ? std::get<std::string>(config.values_at(*index).front()) : "";
-  };
+  const auto value = [&](std::string_view key) { return value_if_declared(config, key); };
   if (value("node.kind") != "simt") {
     return;
   }

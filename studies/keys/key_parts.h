@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -31,6 +32,13 @@ inline void cycles(sim::Schema& schema, std::string_view name, std::int64_t fall
 /// Declares a clock.
 inline void clock(sim::Schema& schema, std::string_view name, std::string_view meaning) {
   schema.frequency(name, "33 MHz", {"1 Hz", "1 THz"}, meaning);
+}
+
+/// The text or choice of a key, given or by default; empty where the schema does not have it. Does not mark
+/// the key as used.
+[[nodiscard]] inline std::string value_if_declared(const sim::Config& config, std::string_view key) {
+  const std::optional<std::size_t> index = config.schema().find(key);
+  return index ? std::get<std::string>(config.values_at(*index).front()) : "";
 }
 
 /// The value of a clock.

@@ -4,11 +4,9 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "accel/bvh_options.h"
@@ -205,9 +203,8 @@ void declare_host(Schema& schema) {
 processors::machine::PacketConfig read_packets(sim::Config& config) {
   using processors::program::Integrator;
   processors::machine::PacketConfig packets{count(config, "packets.width"), count(config, "packets.height")};
-  const std::optional<std::size_t> integrator = config.schema().find("image.integrator");
-  if (integrator && std::get<std::string>(config.values_at(*integrator).front()) ==
-                        processors::program::integrator_names[static_cast<std::size_t>(Integrator::rays)]) {
+  if (value_if_declared(config, "image.integrator") ==
+      processors::program::integrator_names[static_cast<std::size_t>(Integrator::rays)]) {
     constexpr std::uint64_t most = scenes::most_given_rays;
     const std::uint64_t rays = std::uint64_t{packets.width} * packets.height;
     packets = {static_cast<std::uint32_t>(std::min(rays, most)), 1};

@@ -17,6 +17,7 @@
 
 #include "sim/error.h"
 #include "sim/input_files.h"
+#include "sim/mix.h"
 #include "sim/shown.h"
 
 namespace marti::studies::log_file {
@@ -175,10 +176,7 @@ void PackedReader::read_at(std::uint64_t at, void* to, std::size_t count) const 
 }
 
 void PackedReader::list_parts(std::uint64_t size) {
-  constexpr std::uint64_t fnv_basis = 0xcbf29ce484222325ULL;  // FNV-1a (Fowler, Noll, Vo)
-  constexpr std::uint64_t fnv_prime = 0x100000001b3ULL;
   const auto cut_off = [&] { fail("has been cut off; copy it again, or write it again"); };
-  id_ = fnv_basis;
   std::uint64_t at = beginning_bytes;
   for (bool last = false; !last;) {
     if (size < at || size - at < header_bytes) {
@@ -199,7 +197,7 @@ void PackedReader::list_parts(std::uint64_t size) {
     parts_.push_back({at, header.unpacked, header.packed, header.checksum});
     left_ += header.unpacked;
     for (const std::uint32_t word : {header.unpacked, header.packed, header.number, header.checksum}) {
-      id_ = (id_ ^ word) * fnv_prime;
+      id_ = sim::mix(id_ ^ word);
     }
     at += header.packed;
   }

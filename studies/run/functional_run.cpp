@@ -48,8 +48,9 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   const processors::program::LogTotals totals = processors::program::totals_of(*frame.log);
   std::uint64_t beside = 0;
   for (const processors::program::LogRow& row : frame.log->rows) {
-    beside +=
-        (row.entered.words.size() + row.rays.words.size() + row.meets.words.size()) * sizeof(std::uint32_t);
+    for (const processors::program::RowWords* const words : row.beside()) {
+      beside += words->words.size() * sizeof(std::uint32_t);
+    }
   }
   const double bytes = frames * static_cast<double>(totals.bytes + beside) /
                            (static_cast<double>(sample.width) * sample.height * sample.samples) * pixels *

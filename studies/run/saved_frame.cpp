@@ -50,12 +50,10 @@ accel::Traversal traversal_of(const keys::FrameConfig& config) {
     return Traversal::octree;
   }
   if (config.structure == accel::Bsp::kind_name) {
-    return config.structure_options.bsp.walk == accel::BspWalk::recursive ? Traversal::bsp_recursive
-                                                                          : Traversal::bsp_push_point;
+    return accel::traversal_of(config.structure_options.bsp.walk);
   }
   if (config.structure == accel::Bvh::kind_name) {
-    return static_cast<Traversal>(static_cast<std::size_t>(Traversal::bvh_two) +
-                                  static_cast<std::size_t>(config.structure_options.bvh.node));
+    return accel::traversal_of(config.structure_options.bvh.node);
   }
   return config.structure == accel::Grid::kind_name ? Traversal::grid : Traversal::none;
 }
@@ -71,7 +69,8 @@ bool fits(const processors::program::WorkLog& log, const keys::FrameConfig& conf
          (log.voxels == 0 || render.voxel_cut > 0.0);
 }
 
-// Foreign text, which is printed as it is from here on.
+// Texts of the file, which anybody may have written, may have control characters: these are made visible,
+// because notes and facts are printed without another look.
 void make_printable(FunctionalRun& run) {
   for (std::vector<std::string>* const notes : {&run.notes, &run.structure_notes}) {
     for (std::string& note : *notes) {

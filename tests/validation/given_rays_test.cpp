@@ -1,4 +1,4 @@
-// What given rays hit: the same as by brute force in every structure, and what Embree finds.
+// Given rays hit in every structure what a test of all primitives finds, and what Embree finds.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -169,15 +169,13 @@ AppendEntry append_champsim(const MachineConfig& /*machine*/) {
 }
 
 constexpr std::array formats = {
-    RequestFormat{"din", "", ".din", true, nothing, append_din},
-    RequestFormat{"csv", "requests.csv", ".csv", false, csv_head, append_csv},
-    RequestFormat{"ramulator-loadstore", "requests-loadstore.trace", "-loadstore.trace", false, nothing,
-                  append_load_store},
-    RequestFormat{"ramulator-readwrite", "requests-readwrite.trace", "-readwrite.trace", false, nothing,
-                  append_read_write},
-    RequestFormat{"dramsim3", "requests-dramsim3.trace", "-dramsim3.trace", false, nothing, append_dramsim3},
-    RequestFormat{"gem5", "requests.ptrc", ".ptrc", false, gem5_head, append_gem5},
-    RequestFormat{"champsim", "", ".champsim", false, nothing, append_champsim}};
+    RequestFormat{"din", ".din", true, true, nothing, append_din},
+    RequestFormat{"csv", ".csv", false, false, csv_head, append_csv},
+    RequestFormat{"ramulator-loadstore", "-loadstore.trace", false, false, nothing, append_load_store},
+    RequestFormat{"ramulator-readwrite", "-readwrite.trace", false, false, nothing, append_read_write},
+    RequestFormat{"dramsim3", "-dramsim3.trace", false, false, nothing, append_dramsim3},
+    RequestFormat{"gem5", ".ptrc", false, false, gem5_head, append_gem5},
+    RequestFormat{"champsim", ".champsim", true, false, nothing, append_champsim}};
 
 }  // namespace
 

@@ -24,11 +24,11 @@ struct TraceEntry : processors::walk::Request {
 using AppendEntry = std::function<void(const TraceEntry&, std::string& file)>;
 
 struct RequestFormat {
-  std::string_view name;  ///< after --format
-  /// The name of its file of requests, "requests" and an ending; "" for a file of each node. References have
-  /// a file of each node in all formats, because nodes run ahead of each other.
-  std::string_view file;
-  std::string_view ending;  ///< of the files of nodes
+  std::string_view name;    ///< after --format
+  std::string_view ending;  ///< of its files
+  /// Whether each node has a file of its requests; else one file has all. References have a file of each node
+  /// in all formats, because nodes run ahead of each other.
+  bool file_per_node;
   bool only_references;
   /// What a file begins with.
   std::string (*head)(bool references);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -69,8 +70,8 @@ using TraceFiles = std::vector<std::unique_ptr<TraceFile>>;
 
 // The file that has a node's part of a trace.
 std::string file_name(const RequestFormat& format, bool references, std::uint32_t node) {
-  if (!references && !format.file.empty()) {
-    return std::string(format.file);
+  if (!references && !format.file_per_node) {
+    return fmt::format("requests{}", format.ending);
   }
   return fmt::format("{}-{:05}{}", references && !format.only_references ? "references" : "node", node,
                      format.ending);
@@ -146,7 +147,7 @@ void check_format(const RequestFormat& format, bool references, const MachineCon
                   std::size_t nodes) {
   (void)format.append(machine);
   constexpr std::size_t most_files = 512;
-  if ((references || format.file.empty()) && nodes > most_files) {
+  if ((references || format.file_per_node) && nodes > most_files) {
     throw sim::UserError(
         fmt::format("--format {}: writes a file for each of {} nodes at the same time; choose "
                     "at most {} with --nodes",
@@ -159,9 +160,10 @@ bool is_trace(const std::string& name) {
   const std::string_view rest = std::string_view(name).substr(std::min(name.find('-') + 1, name.size()));
   const auto node = sim::parse_number<std::uint32_t>(rest.substr(0, 5));
   return std::ranges::any_of(request_formats(), [&](const RequestFormat& format) {
-    return name == format.file ||
-           (node && (name == file_name(format, true, *node) ||
-                     (format.file.empty() && name == file_name(format, false, *node))));
+    return std::ranges::any_of(std::array{false, true}, [&](bool references) {
+      return (node || (!references && !format.file_per_node)) &&
+             name == file_name(format, references, node.value_or(0));
+    });
   });
 }
 

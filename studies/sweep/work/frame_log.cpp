@@ -48,7 +48,8 @@ std::uint64_t memory_of(const processors::program::WorkLog& log) {
                         reserved(log.topology.work) + reserved(log.quadrics) + reserved(log.texture_begin) +
                         reserved(log.rows);
   for (const processors::program::LogRow& row : log.rows) {
-    for (const processors::program::RowWords* words : row.all()) {
+    bytes += reserved(row.words) + reserved(row.begin);
+    for (const processors::program::RowWords* const words : row.beside()) {
       bytes += reserved(words->words) + reserved(words->begin);
     }
   }
