@@ -5,6 +5,7 @@
 #include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "scenes/default_view.h"
 #include "scenes/folder.h"
@@ -13,6 +14,7 @@
 #include "scenes/part_error.h"
 #include "scenes/ply.h"
 #include "scenes/procedural.h"
+#include "scenes/scene_list.h"
 #include "sim/key_error.h"
 #include "sim/sha256.h"
 #include "sim/shown.h"
@@ -72,7 +74,32 @@ std::string note_of(const GivenRays& given, const std::filesystem::path& file) {
 
 bool names_a_file(std::string_view spec) { return spec.ends_with('/') || !ending_of(spec).empty(); }
 
+bool names_a_camera(std::string_view spec) { return ending_of(spec) == "camera"; }
+
+bool reads_files(std::string_view spec) {
+  if (!is_scene_list(spec)) {
+    return names_a_file(spec);
+  }
+  const std::vector<ListedScene> entries = read_scene_list(spec);
+  return std::any_of(entries.begin(), entries.end(),
+                     [](const ListedScene& entry) { return names_a_file(entry.source); });
+}
+
+std::string source_from(std::string_view spec, const std::filesystem::path& directory) {
+  return is_scene_list(spec)  ? scene_list_from(spec, directory)
+         : names_a_file(spec) ? (directory / spec).lexically_normal().string()
+                              : std::string(spec);
+}
+
+std::string short_source(std::string_view spec) {
+  return is_scene_list(spec) ? name_of_scene_list(spec) : std::string(spec);
+}
+
 AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode) {
+  if (is_scene_list(spec)) {
+    refuse_parts(short_source(spec), "a list", options.file);
+    return open_scene_list(spec, options, decode);
+  }
   const std::string ending = ending_of(spec);
   if (ending == "gltf" || ending == "glb") {
     return open_gltf(path_of(spec, options), options.file, decode);
@@ -84,6 +111,10 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
   if (ending == "ply") {
     refuse_parts(spec, "a PLY file", options.file);
     return open_ply(path_of(spec, options), options.file);
+  }
+  if (ending == "camera") {
+    throw sim::UserError("scene '" + sim::shown(spec) +
+                         "' is a camera by itself: name it in a list beside the files that it looks at");
   }
   if (spec.ends_with('/')) {
     refuse_parts(spec, "a folder", options.file);
@@ -98,8 +129,8 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
 
 Scene open_scene(std::string_view spec, const OpenOptions& options, const ImageDecoder& decode,
                  FileUse* use) {
-  const std::string name =
-      names_a_file(spec) ? sim::shown(path_of(spec, options).string()) : "scene '" + sim::shown(spec) + "'";
+  const std::string name = names_a_file(spec) ? sim::shown(path_of(spec, options).string())
+                                              : "scene '" + sim::shown(short_source(spec)) + "'";
   const AnimatedScene scene = open_animated(spec, options, decode);
   if (use != nullptr) {
     *use = scene.file_use();

@@ -22,18 +22,29 @@ struct OpenOptions {
 };
 
 /// The endings of the names of files that can be read, without the dot.
-inline constexpr std::array<std::string_view, 4> file_endings = {"gltf", "glb", "obj", "ply"};
+inline constexpr std::array<std::string_view, 5> file_endings = {"gltf", "glb", "obj", "ply", "camera"};
 
 /// Opens `spec`: a file when it has one of these endings (in any case), a folder of such files
-/// (scenes/folder.h) when it ends with a slash, else a procedural scene such as "teapot:12"; all but glTF
-/// files have one pose. `options.file.time` is ignored. Choosing a scene, a camera or an animation other than
-/// "none" is an error for all but a glTF file. Throws UserError as open_gltf, open_obj, open_ply, open_folder
-/// and make_procedural do.
+/// (scenes/folder.h) when it ends with a slash, a list of these (scenes/scene_list.h) when it begins with a
+/// bracket or a brace, else a procedural scene such as "teapot:12"; all but glTF files have one pose. A
+/// camera file holds no scene and is for folders and lists. `options.file.time` is ignored. Choosing a scene,
+/// a camera or an animation other than "none" is an error for all but a glTF file. Throws UserError as
+/// open_gltf, open_obj, open_ply, open_folder and make_procedural do.
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 
-/// Whether `spec` is the name of a file or a folder, by its ending, rather than of a procedural scene.
+/// Whether `spec`, which is no list, is the name of a file or a folder, by its ending, rather than of a
+/// procedural scene.
 [[nodiscard]] bool names_a_file(std::string_view spec);
+/// Whether it is the name of a camera file (scenes/camera_file.h).
+[[nodiscard]] bool names_a_camera(std::string_view spec);
+/// Whether opening `spec`, which may be a list, reads files. Throws UserError as read_scene_list() does.
+[[nodiscard]] bool reads_files(std::string_view spec);
+/// What `spec`, whose relative names of files begin in `directory`, is from anywhere. Throws as
+/// reads_files().
+[[nodiscard]] std::string source_from(std::string_view spec, const std::filesystem::path& directory);
+/// `spec` for people: a list in few words. Throws as reads_files().
+[[nodiscard]] std::string short_source(std::string_view spec);
 
 /// The pose at `options.file.time`, with the rays of `options.rays`. A time other than 0 is an error if the
 /// scene does not move; one in the rays is a KeyError about image.rays. Unless `use` is null, it receives how

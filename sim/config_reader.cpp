@@ -324,7 +324,8 @@ class ConfigReader {
         const toml::table document = toml::parse("value = " + text);
         const toml::node& node = *document.get("value");
         const bool wants_text = declared.type == ValueType::text || declared.type == ValueType::choice;
-        if (!wants_text || node.is_string() || node.is_array()) {
+        if (!wants_text || node.is_string() || node.is_array() ||
+            (declared.may_be_composite && node.is_table())) {
           store(key, document_of(node, 0), origin);
           return;
         }

@@ -35,7 +35,8 @@ std::string expectation(const Key& key) {
     case ValueType::real:
       return "a number";
     case ValueType::text:
-      return "a text in quotation marks";
+      return key.may_be_composite ? "a text in quotation marks, a list or a table"
+                                  : "a text in quotation marks";
     case ValueType::choice:
       return print_range(key) + " in quotation marks";
     case ValueType::size:
@@ -96,6 +97,9 @@ Value typed(const Key& key, const DocumentValue& node, std::string_view place) {
     case ValueType::choice:
       if (is<std::string>(node)) {
         return as<std::string>(node);
+      }
+      if (key.may_be_composite && (node.list() != nullptr || node.table() != nullptr)) {
+        return print_in_line(node);
       }
       break;
     case ValueType::size:

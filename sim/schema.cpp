@@ -236,6 +236,14 @@ void Schema::text(std::string_view name, std::string_view default_value, std::st
   add(std::move(key));
 }
 
+void Schema::text_or_composite(std::string_view name, std::string_view default_value,
+                               std::string_view meaning) {
+  Key key = make_key(name, ValueType::text, "", meaning);
+  key.default_value.emplace_back(std::string(default_value));
+  key.may_be_composite = true;
+  add(std::move(key));
+}
+
 void Schema::choice(std::string_view name, std::string_view default_value, std::vector<std::string> choices,
                     std::string_view meaning, std::span<const RenamedChoice> renamed) {
   Key key = make_key(name, ValueType::choice, "", meaning);

@@ -52,6 +52,9 @@ struct Key {
   std::string name;  // dotted: "cache.size"
   ValueType type = ValueType::text;
   bool is_list = false;
+  /// Of a text: a list or a table may be given too, and is kept as what print_in_line() makes of it
+  /// (sim/document.h); its reader tells it from a text by the bracket or brace that it begins with.
+  bool may_be_composite = false;
   std::vector<Value> default_value;  // exactly one unless is_list
   std::optional<Value> minimum;      // inclusive; never for boolean, text, choice
   std::optional<Value> maximum;
@@ -113,6 +116,8 @@ class Schema {
   void real(std::string_view name, double default_value, Range<double> range, std::string_view unit,
             std::string_view meaning);
   void text(std::string_view name, std::string_view default_value, std::string_view meaning);
+  /// A text that may also be given as a list or a table (Key::may_be_composite).
+  void text_or_composite(std::string_view name, std::string_view default_value, std::string_view meaning);
   void choice(std::string_view name, std::string_view default_value, std::vector<std::string> choices,
               std::string_view meaning, std::span<const RenamedChoice> renamed = {});
   void size(std::string_view name, std::string_view default_value, Range<std::string_view> range,

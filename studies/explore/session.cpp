@@ -40,10 +40,13 @@ std::string section_of(const std::string& key) { return key.substr(0, key.rfind(
 std::string value_anywhere(const sim::Config& config, const sim::Key& key, std::size_t index) {
   if (key.name == "scene.source" || key.name == "scene.log" || key.name == "image.rays") {
     const auto& source = std::get<std::string>(config.values_at(index).front());
-    if (key.name == "scene.source" ? scenes::names_a_file(source) : !source.empty()) {
-      const std::filesystem::path file =
-          std::filesystem::absolute(keys::directory_of(config, key.name) / source);
-      return sim::print_value(key.type, file.lexically_normal().string());
+    const std::filesystem::path directory =
+        std::filesystem::current_path() / keys::directory_of(config, key.name);
+    if (key.name == "scene.source") {
+      return sim::print_value(key.type, scenes::source_from(source, directory));
+    }
+    if (!source.empty()) {
+      return sim::print_value(key.type, (directory / source).lexically_normal().string());
     }
   }
   return sim::print_values(key, config.values_at(index));

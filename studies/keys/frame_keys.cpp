@@ -17,6 +17,7 @@
 #include "memory/layout.h"
 #include "processors/walk/node_order.h"
 #include "scenes/given_rays.h"
+#include "scenes/scene_list.h"
 #include "sim/config_errors.h"
 #include "sim/key_error.h"
 #include "sim/mapped.h"
@@ -142,11 +143,13 @@ std::string size_text(const processors::program::RenderOptions& options) {
 
 void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
-  schema.text(
+  schema.text_or_composite(
       "scene.source", "teapot:12",
       "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file, "
       "or a folder of such files with a slash at its end, relative to the configuration (with --set: to the "
-      "current directory)");
+      "current directory); or a list of these as one scene, also of .camera files, in which an entry may be "
+      "a "
+      "table of source and scale, rotate, translate or matrix (docs/scenes.md)");
   schema.text("scene.log", "",
               "a work log that `marti run --save-log` has written, which is read in the place of the scene; "
               "keys of scene, frames, image and structure are those of the log (docs/scenes.md)");
@@ -289,11 +292,32 @@ std::filesystem::path directory_of(const sim::Config& config, std::string_view k
 namespace {
 
 void refuse_missing(const sim::Config& config, std::string_view key, const std::filesystem::path& path,
-                    std::string_view what) {
+                    std::string_view what, const std::string& entry = {}) {
   if (std::error_code error; !std::filesystem::exists(path, error)) {
-    config.fail(key, "there is no " + std::string(what) + " " + sim::shown(path.string()) +
+    config.fail(key, entry + "there is no " + std::string(what) + " " + sim::shown(path.string()) +
                          "; one that a configuration names is looked for beside it, one given with "
                          "--set or --axis in the current directory");
+  }
+}
+
+/// Of a list, all entries, before any of them is read.
+void refuse_missing_scenes(const sim::Config& config, const FrameConfig& frame) {
+  constexpr std::string_view key = "scene.source";
+  const auto refuse = [&](const std::string& source, const std::string& entry) {
+    if (scenes::names_a_file(source)) {
+      refuse_missing(config, key, frame.open.base_directory / source,
+                     source.ends_with('/') ? "folder" : "file", entry);
+    }
+  };
+  if (!scenes::is_scene_list(frame.scene)) {
+    refuse(frame.scene, "");
+    return;
+  }
+  const auto entries = sim::with_places(config, [&] {
+    return sim::KeyError::reported_under(key, [&] { return scenes::read_scene_list(frame.scene); });
+  });
+  for (const scenes::ListedScene& entry : entries) {
+    refuse(entry.source, entry.name + ": ");
   }
 }
 
@@ -445,9 +469,8 @@ FrameConfig read_frame(sim::Config& config, FrameUse use) {
   frame.log = read_log(config, use);
   frame.scene = config.text("scene.source");
   frame.open.base_directory = directory_of(config, "scene.source");
-  if (frame.log == nullptr && scenes::names_a_file(frame.scene)) {
-    refuse_missing(config, "scene.source", frame.open.base_directory / frame.scene,
-                   frame.scene.ends_with('/') ? "folder" : "file");
+  if (frame.log == nullptr) {
+    refuse_missing_scenes(config, frame);
   }
   frame.open.file.scene = config.text("scene.scene");
   frame.open.file.animation = config.text("scene.animation");

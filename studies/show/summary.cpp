@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "scenes/open.h"
 #include "sim/statistics.h"
 #include "studies/figures/find_limit.h"
 #include "studies/run/plan/plan_output.h"
@@ -31,7 +32,7 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 
 void scene_lines(Lines out, const run::RunResult& r) {
   const scenes::SceneFacts& scene = r.functional.scene;
-  fmt::format_to(out, "scene         {}: {}, {}", r.frame_config.scene,
+  fmt::format_to(out, "scene         {}: {}, {}", scenes::short_source(r.frame_config.scene),
                  tables::counted(scene.polygons, "polygon"), tables::counted(scene.triangles, "triangle"));
   for (const auto& [count, name] : {std::pair{scene.spheres, "sphere"},
                                     std::pair{scene.cylinders, "cylinder"}, std::pair{scene.cones, "cone"}}) {

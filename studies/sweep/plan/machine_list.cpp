@@ -80,7 +80,7 @@ void MachineList::move_into(SweepPlan& plan) && {
 
 std::size_t MachineList::enter_frame(const ReadPoint& read) {
   // The same file name means another file in another base directory.
-  const bool file = scenes::names_a_file(read.frame.scene) || !read.frame.open.rays.empty();
+  const bool file = scenes::reads_files(read.frame.scene) || !read.frame.open.rays.empty();
   const keys::LoggedFrame* const log = read.frame.log.get();
   const std::string known =
       read.frame_digest + (log != nullptr ? log->file.string()

@@ -111,7 +111,8 @@ TEST(Folder, NamesTheFileInNotesAndRefusals) {
   FileOptions few;
   few.max_triangles = 4;  // each file's vertices are fewer, those of both are not
   folder.write("b.obj", triangle);
-  EXPECT_TRUE(test::says(refusal(few), "its files have more than 4 triangles or vertices")) << refusal(few);
+  EXPECT_TRUE(test::says(refusal(few), "its parts have more than 4 primitives of a kind or vertices"))
+      << refusal(few);
   FileOptions part;
   part.camera = "0";
   EXPECT_TRUE(test::says(refusal(part), "a folder has one camera and no parts"));
@@ -126,7 +127,7 @@ TEST(Folder, WithoutAnySceneIsRefused) {
   folder.write("a.txt", "");
   EXPECT_TRUE(test::says(refusal("/"), "has no file whose name ends in .gltf, .glb, .obj or .ply"));
   folder.write("a.obj", "v 0 0 0\n");
-  EXPECT_TRUE(test::says(refusal("/"), "none of its 1 scene files has triangles"));
+  EXPECT_TRUE(test::says(refusal("/"), "none of its 1 parts has triangles"));
   EXPECT_TRUE(test::says(refusal(""), "is a folder: write '"));
   EXPECT_TRUE(test::says(refusal("/a.txt/"), "the folder cannot be read: Not a directory"));
 }

@@ -1,0 +1,150 @@
+#include "scenes/merged_scene.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+
+#include "scenes/camera_file.h"
+#include "scenes/default_view.h"
+
+namespace marti::scenes {
+
+namespace {
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// A list that is empty or as long as the positions, and its part for more of them.
+template <class T>
+void append_attribute(std::vector<T>& to, std::size_t before, std::vector<T>&& from, std::size_t more) {
+  if (!to.empty() || !from.empty()) {
+    to.resize(before, T(0.0));
+    from.resize(more, T(0.0));
+    append(to, std::move(from));
+  }
+}
+
+}  // namespace
+
+MergedScene::MergedScene(const SourceFile& whole) : whole_(whole), part_{{}, whole.options()} {
+  scene_.framed = true;
+  part_.file.view = {};
+  part_.file.sky = {};
+  part_.file.default_light = DefaultLight::never;
+  part_.file.animation = "none";
+  part_.file.time = 0.0;
+}
+
+void MergedScene::open(std::string_view spec, const std::filesystem::path& base_directory,
+                       const ImageDecoder& decode, const std::string& name, const Placement* placement) {
+  part_.base_directory = base_directory;
+  part_.file.memory = whole_.memory();  // what the parts before have left of it
+  Scene part;
+  FileUse use;
+  if (names_a_camera(spec)) {
+    part.camera = read_camera_file(base_directory / std::filesystem::path(spec), part_.file);
+  } else {
+    try {
+      const AnimatedScene opened = open_animated(spec, part_, decode);
+      part = opened.at(0.0);
+      use = opened.file_use();
+    } catch (const NoTriangles&) {
+      without_triangles_.push_back(name);
+      return;
+    }
+  }
+  if (placement != nullptr) {
+    place(*placement, name, part);
+  }
+  add(std::move(part), name);
+  add(use);
+}
+
+void MergedScene::add(Scene part, const std::string& name) {
+  const auto vertices = static_cast<std::uint32_t>(scene_.positions.size());
+  const auto materials = static_cast<std::uint32_t>(scene_.materials.size());
+  const auto textures = static_cast<std::uint32_t>(scene_.textures.size());
+  const auto sources =
+      static_cast<std::uint32_t>(scene_.quadrics.empty() ? 0 : scene_.quadrics.back().source + 1);
+  const std::uint64_t most = whole_.options().max_triangles;
+  if (scene_.triangles.size() + part.triangles.size() > most || vertices + part.positions.size() > most ||
+      scene_.quadrics.size() + part.quadrics.size() > most) {
+    whole_.fail("its parts have more than " + std::to_string(most) +
+                " primitives of a kind or vertices, which is more than is accepted");
+  }
+  whole_.take_memory(host_bytes(part), "its parts take");
+  for (Triangle& triangle : part.triangles) {
+    for (std::uint32_t& vertex : triangle.vertex) {
+      vertex += vertices;
+    }
+    triangle.material += materials;
+    triangle.polygon += static_cast<std::uint32_t>(scene_.polygons);
+  }
+  for (Quadric& quadric : part.quadrics) {
+    quadric.material += materials;
+    quadric.source += sources;
+  }
+  for (Material& material : part.materials) {
+    material.texture += material.texture == no_texture ? 0 : textures;
+  }
+  if (scene_.framed && !part.framed) {
+    scene_.framed = false;
+    scene_.camera = part.camera;
+    scene_.background = part.background;
+    scene_.ambient = part.ambient;
+  }
+  scene_.lights_are_all = scene_.lights_are_all || part.lights_are_all;
+  scene_.polygons += part.polygons;
+  append_attribute(scene_.normals, vertices, std::move(part.normals), part.positions.size());
+  append_attribute(scene_.uvs, vertices, std::move(part.uvs), part.positions.size());
+  append(scene_.positions, std::move(part.positions));
+  append(scene_.triangles, std::move(part.triangles));
+  append(scene_.quadrics, std::move(part.quadrics));
+  append(scene_.materials, std::move(part.materials));
+  append(scene_.textures, std::move(part.textures));
+  append(scene_.lights, std::move(part.lights));
+  for (const std::string& note : part.notes) {
+    if (note != no_camera_note) {
+      scene_.notes.push_back(name + ": " + note);
+    }
+  }
+  ++parts_;
+}
+
+AnimatedScene MergedScene::finish(std::string name) && {
+  if (scene_.triangles.empty() && scene_.quadrics.empty()) {
+    whole_.fail("none of its " + std::to_string(parts_ + without_triangles_.size()) + " parts has triangles");
+  }
+  scene_.name = std::move(name);
+  if (!without_triangles_.empty()) {
+    constexpr std::size_t most_names = 8;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(without_triangles_.size(), most_names); ++i) {
+      names += (i == 0 ? "" : ", ") + without_triangles_[i];
+    }
+    scene_.notes.push_back("Left out: " + std::to_string(without_triangles_.size()) +
+                           " files without triangles: " + names +
+                           (without_triangles_.size() > most_names ? ", ..." : "") + ".");
+  }
+  set_view(scene_, whole_.options());
+  return AnimatedScene(std::move(scene_), std::move(use_));
+}
+
+void MergedScene::add(const FileUse& use) {
+  for (const PartUse& part : use.parts) {
+    const auto same = std::find_if(use_.parts.begin(), use_.parts.end(),
+                                   [&](const PartUse& known) { return known.name == part.name; });
+    if (same == use_.parts.end()) {
+      use_.parts.push_back(part);
+    } else {
+      same->all += part.all;
+      same->used += part.used;
+    }
+  }
+  use_.unread_bytes += use.unread_bytes;
+}
+
+}  // namespace marti::scenes
