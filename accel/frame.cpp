@@ -15,8 +15,6 @@ namespace {
 // instead of within delta of it, and their triangles are not listed twice. It is not a power of two, so that
 // the flat side of a flat scene lies in no plane of any level.
 constexpr double root_margin = 192.0;
-// Products of three coordinates must stay far from overflow, as in triangles.cpp.
-constexpr double largest_coordinate = 0x1p300;
 
 void check_enclosed(const scenes::Bounds& box) {
   for (int a = 0; a < 3; ++a) {

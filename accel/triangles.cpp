@@ -13,9 +13,6 @@ namespace marti::accel {
 
 namespace {
 
-// Products of three coordinates must stay far from overflow.
-constexpr double largest_coordinate = 0x1p300;
-
 /// Makes the corner of a triangle without area that lies between the two others a copy of one of these. No
 /// ray hits two equal corners, because the kernel's products of equal numbers are equal; three corners on a
 /// line are no longer on one after the kernel has rounded them. The box stays, up to rounding.

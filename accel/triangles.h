@@ -18,6 +18,9 @@ namespace marti::accel {
 /// equal, so that no ray hits it.
 using TriangleCorners = std::array<double, 9>;
 
+/// The largest magnitude of a coordinate: products of three must stay far from overflow.
+inline constexpr double largest_coordinate = 0x1p300;
+
 /// Primitive ids are indices: of T triangles, triangle i is Scene::triangles[i] and has the id i; the curved
 /// primitive i is Scene::quadrics[i] and has the id T + i.
 class TriangleSet {

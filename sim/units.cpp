@@ -38,7 +38,7 @@ constexpr std::string_view frequency_hint =
 constexpr std::string_view percentage_hint =
     "a percentage is a number from 0 on with its sign, such as \"42 %\"";
 
-[[noreturn]] void fail(std::string_view text, std::string_view reason) {
+[[noreturn]] void refuse(std::string_view text, std::string_view reason) {
   throw UserError("\"" + shown(text) + "\": " + std::string(reason));
 }
 
@@ -79,7 +79,7 @@ Quantity split(std::string_view text, std::string_view hint) {
     wrong = wrong || quantity.fraction.empty();
   }
   if (wrong) {
-    fail(text, hint);
+    refuse(text, hint);
   }
   quantity.unit = trim(trimmed.substr(at));
   return quantity;
@@ -105,7 +105,7 @@ std::int64_t exact_product(std::string_view text, const Quantity& quantity, std:
   // A scale up to 2^40 or 10^12 has at most 40 factors of 2 and 12 of 5, so further digits cannot cancel.
   constexpr std::size_t most_digits = 40;
   if (fraction.size() > most_digits) {
-    fail(text, not_whole);
+    refuse(text, not_whole);
   }
   // Long division of scale * 0.fraction: each step, from the last digit on, must leave no remainder.
   __int128 part = 0;
@@ -113,7 +113,7 @@ std::int64_t exact_product(std::string_view text, const Quantity& quantity, std:
   for (std::size_t i = fraction.size(); i-- > 0;) {
     part += static_cast<__int128>(fraction[i] - '0') * scale;
     if (part % 10 != 0) {
-      fail(text, not_whole);
+      refuse(text, not_whole);
     }
     part /= 10;
   }
@@ -125,7 +125,7 @@ std::int64_t exact_product(std::string_view text, const Quantity& quantity, std:
     }
   }
   if (whole > limit || whole * scale + part > limit) {
-    fail(text, "is too large: at most 2^63 - 1 " + std::string(base));
+    refuse(text, "is too large: at most 2^63 - 1 " + std::string(base));
   }
   return static_cast<std::int64_t>(whole * scale + part);
 }
@@ -167,7 +167,7 @@ double nearest_real(std::string_view text, const Quantity& quantity, int exponen
       std::string(quantity.whole) + "." + std::string(quantity.fraction) + "0e" + std::to_string(exponent);
   const std::optional<double> value = parse_number<double>(written);
   if (!value || !std::isfinite(*value)) {
-    fail(text, "is too large or too small for a number");
+    refuse(text, "is too large or too small for a number");
   }
   return *value;
 }
@@ -196,10 +196,10 @@ std::int64_t parse_size(std::string_view text) {
   constexpr std::array<std::string_view, 8> ambiguous{"kB", "KB", "K", "k", "MB", "M", "GB", "G"};
   for (const std::string_view name : ambiguous) {
     if (quantity.unit == name) {
-      fail(text, "the unit " + std::string(name) + " is ambiguous: write KiB, MiB or GiB (powers of 1024)");
+      refuse(text, "the unit " + std::string(name) + " is ambiguous: write KiB, MiB or GiB (powers of 1024)");
     }
   }
-  fail(text, size_hint);
+  refuse(text, size_hint);
 }
 
 std::string print_size(std::int64_t bytes) {
@@ -211,7 +211,7 @@ double parse_frequency(std::string_view text) {
   const Quantity quantity = split(text, frequency_hint);
   const Unit* unit = find_unit(frequency_units, quantity.unit);
   if (unit == nullptr) {
-    fail(text, frequency_hint);
+    refuse(text, frequency_hint);
   }
   return nearest_real(text, quantity, static_cast<int>(unit->scale));
 }
@@ -232,7 +232,7 @@ Ticks parse_duration(std::string_view text) {
   const Quantity quantity = split(text, duration_hint);
   const Unit* unit = find_unit(duration_units, quantity.unit);
   if (unit == nullptr) {
-    fail(text, duration_hint);
+    refuse(text, duration_hint);
   }
   return exact_product(text, quantity, unit->scale, "picoseconds");
 }
@@ -245,7 +245,7 @@ std::string print_duration(Ticks duration) {
 double parse_percentage(std::string_view text) {
   const Quantity quantity = split(text, percentage_hint);
   if (quantity.unit != "%") {
-    fail(text, percentage_hint);
+    refuse(text, percentage_hint);
   }
   return nearest_real(text, quantity, -2);
 }
