@@ -64,7 +64,8 @@ class StrippedLog {
 
   /// Strips `log` for the key of `config` and for each of `ways`, in one pass on all host threads; the same
   /// at any number of them. An entry is null when a line number or a number of cycles does not fit, or when
-  /// the words of all would take more than `most_bytes`; all are null for a machine without key. `meter`
+  /// the words of all would take more than `most_bytes`, or so much more than the log that they save too
+  /// little time for it; all are null for a machine without key. `meter`
   /// counts each packet, and after its stop() this throws sim::Stopped; null: nobody waits.
   [[nodiscard]] static std::vector<std::shared_ptr<const StrippedLog>> make(
       const program::WorkLog& log, const machine::MachineConfig& config, std::span<const std::uint32_t> ways,

@@ -138,10 +138,14 @@ class Loop {
     std::vector<std::shared_ptr<const StrippedLog>> logs = StrippedLog::make(log, machine, batch.ways, left);
     if (batch.ways.size() > 1 &&
         std::ranges::all_of(logs, [](const auto& each) { return each == nullptr; })) {
-      // They do not fit together. Those for many ways take the least memory.
+      // They do not fit together. Those for many ways take the least memory; after one that does not fit,
+      // none does.
       for (std::size_t i = batch.ways.size(); i-- > 0;) {
         logs[i] = StrippedLog::make(log, machine, std::span(batch.ways).subspan(i, 1), left).front();
-        left -= logs[i] == nullptr ? 0 : std::min(left, logs[i]->bytes_of_words());
+        if (logs[i] == nullptr) {
+          break;
+        }
+        left -= std::min(left, logs[i]->bytes_of_words());
       }
     }
     return logs;

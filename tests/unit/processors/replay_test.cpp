@@ -9,12 +9,16 @@
 #include <array>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "accel/structure.h"
 #include "processors/cost/step_time.h"
+#include "processors/program/render.h"
 #include "processors/walk/kept_visits.h"
 #include "processors/walk/observer.h"
 #include "processors/walk/stripped_log.h"
+#include "scenes/procedural.h"
 #include "sim/error.h"
 #include "tests/support/equal_results.h"
 #include "tests/support/logged_samples.h"
@@ -73,6 +77,17 @@ RC_GTEST_PROP(Replay, AStrippedLogGivesTheSameResult, (std::uint64_t seed)) {
   if (StrippedLog::key_of(other) == both[1]->key()) {
     test::expect_equal(replay::replay(log, other), replay::replay(log, other, {.stripped = both[1].get()}));
     RC_ASSERT(!::testing::Test::HasFatalFailure());
+  }
+}
+
+// Without a structure a ray refers to all triangles, which takes one word of the log.
+TEST(Replay, AStrippedLogOfFarMoreWordsThanItsLogIsGivenUp) {
+  for (const auto& [structure, given_up] : {std::pair("octree", false), std::pair("none", true)}) {
+    const scenes::Scene scene = scenes::make_procedural("teapot:16");
+    const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+    const Frame frame = render(scene, *triangles, *accel::make_structure(structure, triangles),
+                               {.width = 12, .height = 12, .record = true});
+    EXPECT_EQ(StrippedLog::make(*frame.log, MachineConfig()) == nullptr, given_up) << structure;
   }
 }
 
