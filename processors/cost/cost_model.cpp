@@ -141,6 +141,15 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
   steps.test = price(mixes.test, cycles, sim::add_ticks(beside, primitive));
   steps.sphere_test = price(mixes.sphere_test, cycles, sim::add_ticks(beside, quadric));
   steps.cone_test = price(mixes.cone_test, cycles, sim::add_ticks(beside, quadric));
+  // A ray to a point of a light, or into the hemisphere, is drawn as path tracing draws them: there the point
+  // is a part of shading, and the direction one of scattered rays.
+  std::int64_t& any_hit = steps.ray[static_cast<std::size_t>(program::RayKind::shadow)];
+  if (integrator == program::Integrator::shadow) {
+    const std::int64_t drawing = price(mixes.path_shade, cycles, 0) - price(mixes.shade, cycles, 0);
+    any_hit = sim::add_ticks(any_hit, std::max<std::int64_t>(drawing, 0));
+  } else if (integrator == program::Integrator::occlusion) {
+    any_hit = steps.ray[static_cast<std::size_t>(program::RayKind::diffuse)];
+  }
   // The nearest primitive and the lights are in the node's registers or local store.
   steps.shade = price(path ? mixes.path_shade : mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(path ? mixes.path_light : mixes.light, cycles, 0);

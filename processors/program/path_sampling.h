@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -30,6 +31,8 @@ enum class Draw : std::uint32_t {
   on_emitter_b,
   direction  ///< the direction of scattered light: this and all that follow, in pairs
 };
+// With sends_any_hit_rays(), the place of a surface point in the path is that of a ray among those of one
+// hit.
 
 /// The random numbers of one sample of a pixel: a stream of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), of
 /// which each surface point of the path has 64.
@@ -65,11 +68,10 @@ Real drawn(double number) {
   }
 }
 
-/// A direction about the unit normal with a density proportional to its cosine: the normal and a point of the
-/// unit sphere, added. The point is found as by Marsaglia, "Choosing a point from the surface of a sphere",
-/// Annals of Mathematical Statistics 43(2), 1972: without sines, whose last bits differ between computers.
+/// A point of the unit sphere, found as by Marsaglia, "Choosing a point from the surface of a sphere", Annals
+/// of Mathematical Statistics 43(2), 1972: without sines, whose last bits differ between computers.
 template <typename Real>
-Vec3<Real> scattered(const Vec3<Real>& normal, const PathNumbers& numbers, std::uint32_t bounce) {
+std::optional<Vec3<Real>> on_sphere(const PathNumbers& numbers, std::uint32_t bounce) {
   using std::sqrt;
   // Each try misses the unit circle with probability 0.215; all miss it once in 10^19 points.
   constexpr std::uint32_t most = PathNumbers::a_point - static_cast<std::uint32_t>(Draw::direction) - 1;
@@ -81,11 +83,43 @@ Vec3<Real> scattered(const Vec3<Real>& normal, const PathNumbers& numbers, std::
       continue;
     }
     const Real side = Real(2.0) * sqrt(Real(1.0) - squared);
-    const Vec3<Real> sum = normal + Vec3<Real>(a * side, b * side, Real(1.0) - Real(2.0) * squared);
-    // Nearly opposite to the normal the sum has no direction.
-    return dot(sum, sum) > Real(0x1p-40) ? normalized(sum) : normal;
+    return Vec3<Real>(a * side, b * side, Real(1.0) - Real(2.0) * squared);
   }
-  return normal;
+  return std::nullopt;
+}
+
+/// A direction about the unit normal with a density proportional to its cosine: the normal and a point of the
+/// unit sphere, added.
+template <typename Real>
+Vec3<Real> scattered(const Vec3<Real>& normal, const PathNumbers& numbers, std::uint32_t bounce) {
+  const std::optional<Vec3<Real>> point = on_sphere<Real>(numbers, bounce);
+  if (!point) {
+    return normal;
+  }
+  const Vec3<Real> sum = normal + *point;
+  // Nearly opposite to the normal the sum has no direction.
+  return dot(sum, sum) > Real(0x1p-40) ? normalized(sum) : normal;
+}
+
+/// Lights without an extent are balls for Integrator::shadow, which are seen under the angle, from the middle
+/// to the rim, whose sine this is: 0.9 degrees. Those of the sun are 0.27.
+inline constexpr double jitter_of_lights = 0x1p-6;
+
+/// Puts a point on the surface of its ball in the place of a light without an extent. `position`: the light's
+/// place, moved along; of no meaning for a directional light.
+template <typename Real>
+void jitter(const Surface<Real>& surface, const PathNumbers& numbers, std::uint32_t ray,
+            LightSample<Real>& light, Vec3<Real>& position) {
+  using std::sqrt;
+  const std::optional<Vec3<Real>> point = on_sphere<Real>(numbers, ray);
+  if (!point) {
+    return;
+  }
+  if (!light.at_infinity) {
+    const Vec3<Real> way = position - surface.point;
+    position = position + *point * (sqrt(dot(way, way)) * Real(jitter_of_lights));
+  }
+  light.direction = normalized(light.direction + *point * Real(jitter_of_lights));
 }
 
 /// The triangles whose material emits light, for next-event estimation: one of them is drawn in proportion to

@@ -34,6 +34,11 @@ void check_options(const RenderOptions& options) {
   }
   in_range("max_depth", options.max_depth, 1, max_ray_depth);
   in_range("samples", options.samples, 1, max_samples);
+  in_range("secondary_rays", options.secondary_rays, 1, max_secondary_rays);
+  if (!(options.occlusion_distance >= 0.0 && std::isfinite(options.occlusion_distance))) {
+    throw sim::UserError("the render's occlusion_distance is " + std::to_string(options.occlusion_distance) +
+                         "; it must be finite and not below 0");
+  }
   if (!(options.min_weight >= 0.0 && options.min_weight <= 1.0)) {
     throw sim::UserError("the render's min_weight is " + std::to_string(options.min_weight) +
                          "; it must be from 0 to 1");
@@ -59,6 +64,11 @@ void check_options(const RenderOptions& options) {
     throw sim::KeyError("image.min_weight",
                         "cutting rays off would darken a path-traced image, which ends paths by chance "
                         "instead; set image.min_weight = 0");
+  }
+  if (sends_any_hit_rays(options.integrator) && options.voxel_cut > 0.0) {
+    throw sim::KeyError("image.voxel_cut",
+                        "averages what mirrors and lights show; set image.voxel_cut = 0 where no more than "
+                        "shadows are asked for");
   }
   if (options.integrator == Integrator::rays) {
     sim::ensure(options.voxel_cut == 0.0 && options.samples == 1 && !options.window &&
@@ -100,7 +110,9 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
     log.quadrics.push_back(primitives.kind(id));
   }
   log.materials = static_cast<std::uint32_t>(scene.materials.size());
-  log.lights = static_cast<std::uint32_t>(scene.lights.size()) + (emitters.empty() ? 0U : 1U);
+  log.lights = options.integrator == Integrator::occlusion
+                   ? 1
+                   : static_cast<std::uint32_t>(scene.lights.size()) + (emitters.empty() ? 0U : 1U);
   log.texture_begin.push_back(0);
   for (const scenes::Texture& texture : scene.textures) {
     log.texture_begin.push_back(log.texture_begin.back() + texture.size());
@@ -160,7 +172,7 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   frame.voxels = voxels ? voxels->size() : 0;
   frame.first_voxel_level = voxels ? voxels->first_level() : 0;
 
-  const Emitters emitters = options.integrator == Integrator::path ? Emitters(scene) : Emitters();
+  const Emitters emitters = asks_emitters(options.integrator) ? Emitters(scene) : Emitters();
   WorkLog log;
   if (options.record) {
     check_log_capacity(structure.topology().nodes.size(), scene.materials.size() + frame.voxels,

@@ -30,6 +30,9 @@ inline constexpr std::uint32_t max_image_side = 32768;
 /// The largest RenderOptions::max_depth.
 inline constexpr std::uint32_t max_ray_depth = 64;
 
+/// The largest RenderOptions::secondary_rays.
+inline constexpr std::uint32_t max_secondary_rays = 4096;
+
 /// The largest RenderOptions::samples.
 inline constexpr std::uint32_t max_samples = 1024;
 
@@ -52,6 +55,11 @@ struct RenderOptions {
   std::uint32_t max_depth =
       5;  ///< rays in a row, the eye ray being 1; 1 to max_ray_depth. Shadow rays are free.
   Integrator integrator = Integrator::whitted;
+  /// With sends_any_hit_rays(): of each camera ray that hits, 1 to max_secondary_rays.
+  std::uint32_t secondary_rays = 4;
+  /// With Integrator::occlusion: how far rays reach, in largest sides of the scene's box; 0: without end. At
+  /// least 0 and finite.
+  double occlusion_distance = 0.1;
   double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight in its sample is below this is not traced
   /// Camera rays of a pixel, 1 to max_samples, of the same weight. One goes through the pixel's centre,
   /// several through points drawn for them (sample_points.h), whose generator begins with `seed`.

@@ -16,6 +16,14 @@
 // a probability that is its largest weight in the sample, at most 1, over which its weight is divided. There
 // is no ambient light, and the background shines from everywhere.
 //
+// Integrator::shadow and Integrator::occlusion send a number of rays from where a camera ray hits, each of
+// which any hit ends, and nothing else. With shadow these go to points of the lights, one light after the
+// other, the first of them drawn: to points of emissive triangles, and to points of small balls in the place
+// of lights without an extent (path_sampling.h). With occlusion they go into the hemisphere about the
+// triangle's normal with a density proportional to the cosine, and reach a given distance. The image shows
+// the share of them that nothing blocks; one that would begin behind its own surface is not sent and counts
+// as blocked.
+//
 // Integrator::rays follows no light: a pixel is one of the scene's given rays, and its log the ray and its
 // visits. The image shows how far away what it hits is.
 //
@@ -64,7 +72,7 @@ class Tracer {
   using Vec = Vec3<Real>;
 
   /// Keeps references to all but the plane; they must outlive the tracer.
-  /// `emitters`: those of the scene with Integrator::path, else none.
+  /// `emitters`: those of the scene with asks_emitters(), else none.
   Tracer(const scenes::Scene& scene, const Structure& structure, const Emitters& emitters,
          const scenes::ImagePlane& plane, const RenderOptions& options, Recorder& recorder)
       : scene_(scene),
@@ -100,7 +108,7 @@ class Tracer {
       return color_;
     }
     for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
-      if (options_.integrator == Integrator::path) {
+      if (options_.integrator != Integrator::whitted) {
         numbers_ = PathNumbers(x, y, sample, options_.seed);
       }
       trace(points_.at(x, y, sample));
@@ -257,6 +265,10 @@ class Tracer {
         triangle ? surface_at(scene_, hit.primitive, b, pending.direction, reach_)
                  : quadric_surface(structure_.triangles().quadric(hit.primitive),
                                    pending.origin + pending.direction * Real(hit.t), pending.direction);
+    if (sends_any_hit_rays(options_.integrator)) {
+      ask_any_hit(pending, surface);
+      return;
+    }
     surface.color = Vec(material.color);
     if (triangle && material.texture != scenes::no_texture && !scene_.uvs.empty()) {
       recorder_.phase(Phase::texel, pending.kind);
@@ -267,6 +279,64 @@ class Tracer {
       recorder_.phase(Phase::shade, pending.kind);
     }
     light_up(pending, material, surface, emitters_.has(hit.primitive));
+  }
+
+  /// With sends_any_hit_rays(): all that follows from a camera ray's hit.
+  void ask_any_hit(const Pending& pending, const Surface<Real>& surface) {
+    const bool occlusion = options_.integrator == Integrator::occlusion;
+    std::uint32_t reached = 0;
+    for (std::uint32_t ray = 0; ray < options_.secondary_rays; ++ray) {
+      reached += (occlusion ? sees_far(surface, ray) : sees_a_light(surface, ray)) ? 1U : 0U;
+    }
+    const auto share = static_cast<Real>(static_cast<double>(reached) / options_.secondary_rays);
+    add(pending.weight, Vec(share, share, share));
+  }
+
+  bool sees_far(const Surface<Real>& surface, std::uint32_t number) {
+    recorder_.phase(Phase::ray, RayKind::shadow);
+    const Vec direction = scattered(surface.geometric, numbers_, number);
+    if (!(dot(direction, surface.geometric) > Real(0.0))) {
+      return false;
+    }
+    accel::Ray ray = leaving_ray(leave(surface, direction), direction);
+    if (options_.occlusion_distance > 0.0) {
+      ray.t_max = options_.occlusion_distance * reach_;
+    }
+    return !blocked(ray, 1) && reaches(0);
+  }
+
+  bool sees_a_light(const Surface<Real>& surface, std::uint32_t number) {
+    const std::size_t lights = scene_.lights.size() + (emitters_.empty() ? 0 : 1);
+    if (lights == 0) {
+      return false;
+    }
+    recorder_.phase(Phase::ray, RayKind::shadow);
+    const auto first = static_cast<std::size_t>(numbers_.at(0, Draw::lobe) * static_cast<double>(lights));
+    const std::size_t chosen = (first + number) % lights;
+    LightSample<Real> light;
+    Vec place;
+    if (chosen < scene_.lights.size()) {
+      light = light_at(scene_.lights[chosen], surface);
+      place = Vec(scene_.lights[chosen].position);
+      if (!light.reaches) {
+        return false;
+      }
+      jitter(surface, numbers_, number, light, place);
+    } else {
+      const EmitterSample<Real> sample =
+          emitter_at<Real>(scene_, emitters_, surface, numbers_, number, reach_);
+      light = sample.light;
+      place = sample.target;
+    }
+    return light.reaches && faces(surface, light) && !in_shadow(surface, light, place, 1) &&
+           reaches(static_cast<std::uint32_t>(chosen));
+  }
+
+  /// Notes that a ray has come to its light. True.
+  bool reaches(std::uint32_t light) {
+    recorder_.phase(Phase::light, RayKind::camera);
+    recorder_.light(light);
+    return true;
   }
 
   /// The ray ended at a voxel: its averaged material is shaded on a surface that stands for the cell.
@@ -354,13 +424,18 @@ class Tracer {
       ray = leaving_ray(origin, position - origin);
       ray.t_max = 1.0;
     }
+    return blocked(ray, bounce);
+  }
+
+  /// Whether anything lies on the ray.
+  bool blocked(const accel::Ray& ray, std::uint32_t bounce) {
     recorder_.ray(RayKind::shadow, bounce, ray);
-    const bool blocked = structure_.template occluded<Real>(ray, recorder_);
+    const bool any = structure_.template occluded<Real>(ray, recorder_);
     constexpr auto kind = static_cast<std::size_t>(RayKind::shadow);
     ++rays_.traced[kind];
-    rays_.hit[kind] += blocked ? 1U : 0U;
-    note(blocked ? 1U : 0U, 1);
-    return blocked;
+    rays_.hit[kind] += any ? 1U : 0U;
+    note(any ? 1U : 0U, 1);
+    return any;
   }
 
   /// Pushes the refracted ray on the stack, and the reflected ray on top of it.
@@ -473,7 +548,7 @@ class Tracer {
   double share_;  ///< weight of a sample in its pixel
   double reach_;  ///< largest side of the scene's box
   SamplePoints points_;
-  PathNumbers numbers_{0, 0, 0, 0};  ///< of the sample, with Integrator::path
+  PathNumbers numbers_{0, 0, 0, 0};  ///< of the sample, unless with Integrator::whitted
 
   Vec color_;
   RayCounts rays_;

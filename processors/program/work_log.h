@@ -27,8 +27,17 @@ namespace marti::processors::program {
 
 /// Which light the program follows: mirror images and refractions only, or also the light that surfaces
 /// scatter to each other; or none, and it finds what given rays hit (tracer.h).
-enum class Integrator : std::uint8_t { whitted, path, rays };
-inline constexpr std::array<std::string_view, 3> integrator_names = {"whitted", "path", "rays"};
+enum class Integrator : std::uint8_t { whitted, path, rays, shadow, occlusion };
+inline constexpr std::array<std::string_view, 5> integrator_names = {"whitted", "path", "rays", "shadow",
+                                                                     "occlusion"};
+/// Whether points of emissive triangles are asked for light, as one light beside the scene's own.
+[[nodiscard]] constexpr bool asks_emitters(Integrator integrator) {
+  return integrator == Integrator::path || integrator == Integrator::shadow;
+}
+/// Whether each camera ray that hits sends a number of rays that any hit ends, and nothing is shaded.
+[[nodiscard]] constexpr bool sends_any_hit_rays(Integrator integrator) {
+  return integrator == Integrator::shadow || integrator == Integrator::occlusion;
+}
 
 /// Kinds of ray, in the order statistics list them. Diffuse rays are those that a scattering surface sends on
 /// in a random direction; only Integrator::path has them.
@@ -39,7 +48,8 @@ inline constexpr std::array<std::string_view, ray_kinds> ray_kind_names = {"came
 
 /// The operand of a `ray` step. The bounce is the number of surface points between the eye and the ray's
 /// origin: 0 for camera rays, 1 for the rays that start where a camera ray ends. With Integrator::rays those
-/// of which the closest hit is wanted are camera rays, the others shadow rays, and all have bounce 0.
+/// of which the closest hit is wanted are camera rays, the others shadow rays, and all have bounce 0. The
+/// rays of Integrator::occlusion are shadow rays, and the sky about the point is their light.
 inline constexpr unsigned ray_kind_bits = 3;
 [[nodiscard]] constexpr std::uint32_t ray_operand(RayKind kind, std::uint32_t bounce) {
   return static_cast<std::uint32_t>(kind) | bounce << ray_kind_bits;
@@ -185,7 +195,7 @@ struct LogFacts {
   std::vector<accel::PrimitiveKind> quadrics;
   std::uint32_t materials = 0;  ///< number of material records, averaged ones included
   std::uint32_t voxels = 0;     ///< of these, averaged for the voxel cut: the last ones
-  /// Number of lights; with Integrator::path and emissive triangles these are together one light more, the
+  /// Number of lights; with asks_emitters() and emissive triangles these are together one light more, the
   /// last.
   std::uint32_t lights = 0;
   std::vector<std::uint64_t> texture_begin;  ///< first texel of each texture in the texel array, plus the end

@@ -55,6 +55,10 @@ std::optional<std::string> not_sampled(const keys::FrameConfig& frame) {
   if (frame.render.integrator == processors::program::Integrator::path) {
     return "the errors of samples of path-traced frames have not been measured (image.integrator)";
   }
+  if (processors::program::sends_any_hit_rays(frame.render.integrator)) {
+    return "the errors of samples of frames of shadow or occlusion rays alone have not been measured "
+           "(image.integrator)";
+  }
   if (frame.render.integrator == processors::program::Integrator::rays) {
     return "the errors of samples of given rays have not been measured (image.integrator)";
   }

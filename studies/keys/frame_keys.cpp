@@ -203,12 +203,19 @@ void declare_frame_keys(sim::Schema& schema) {
       "image.integrator", "whitted", names(processors::program::integrator_names),
       "whitted: lights, mirror images and refractions; path: path tracing, also light that surfaces "
       "scatter to each other, emissive triangles as lights, noise that more samples lessen; rays: no image, "
-      "but what the rays of image.rays hit");
+      "but what the rays of image.rays hit; shadow, occlusion: from what camera rays hit, "
+      "image.secondary_rays rays to points of the lights, or a short way into the hemisphere, each ended by "
+      "any hit, and nothing else (docs/scenes.md)");
   schema.text("image.rays", "",
               "rays: a NumPy file (.npy), relative to the configuration (with --set: to the current "
               "directory), of float32 or float64 with a row for each ray: origin (3), least distance, "
               "direction (3), greatest distance, and, where there is a ninth column, 0 for the closest hit "
               "or 1 for any (docs/scenes.md)");
+  schema.integer("image.secondary_rays", 4, {1, processors::program::max_secondary_rays}, "rays",
+                 "shadow, occlusion: rays from each point that a camera ray hits");
+  schema.real("image.occlusion_distance", 0.1, {0.0, 1e6}, "",
+              "occlusion: how far the rays reach, as a part of the largest side of the scene's box; 0: "
+              "without end");
   schema.integer("image.max_depth", 5, {1, processors::program::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
@@ -383,6 +390,23 @@ scenes::ViewOptions read_view(const sim::Config& config) {
   return view;
 }
 
+void read_any_hit_rays(sim::Config& config, FrameConfig& frame) {
+  const bool occlusion = frame.render.integrator == processors::program::Integrator::occlusion;
+  frame.render.secondary_rays = count(config, "image.secondary_rays");
+  frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
+  if (occlusion) {
+    frame.render.occlusion_distance = config.real("image.occlusion_distance");
+    frame.open.file.default_light = scenes::DefaultLight::never;
+  }
+  // No chains of rays: what planning and memory assume of deep ones need not be.
+  frame.render.max_depth = 1;
+  config.mark_unused_reason(
+      "image", "with \"shadow\" and \"occlusion\" only image.secondary_rays rays follow what the eye sees",
+      "image.integrator");
+  config.mark_unused_reason("image.occlusion_distance", "shadow rays reach to their lights",
+                            "image.integrator");
+}
+
 /// Where the camera is and what it sees, of which given rays know nothing.
 void read_image(sim::Config& config, FrameConfig& frame) {
   frame.open.file.camera = config.text("scene.camera");
@@ -392,14 +416,23 @@ void read_image(sim::Config& config, FrameConfig& frame) {
   frame.render.width = count(config, "image.width");
   frame.render.height = count(config, "image.height");
   read_region(config, frame.render);
+  const processors::program::Integrator integrator = frame.render.integrator;
+  const bool path = integrator == processors::program::Integrator::path;
+  frame.open.file.emitters_light = processors::program::asks_emitters(integrator);
+  frame.render.samples = count(config, "image.samples");
+  if (processors::program::sends_any_hit_rays(integrator)) {
+    read_any_hit_rays(config, frame);
+    return;
+  }
+  config.mark_unused_reason("image.secondary_rays", "such rays are those of \"shadow\" and \"occlusion\"",
+                            "image.integrator");
+  config.mark_unused_reason("image.occlusion_distance", "such rays are those of \"occlusion\"",
+                            "image.integrator");
   frame.render.max_depth = count(config, "image.max_depth");
-  const bool path = frame.render.integrator == processors::program::Integrator::path;
-  frame.open.file.emitters_light = path;
   frame.render.min_weight = path ? 0.0 : config.real("image.min_weight");
   config.mark_unused_reason("image.min_weight",
                             "a path ends by chance, because rays cut off would darken the image",
                             "image.integrator");
-  frame.render.samples = count(config, "image.samples");
   if (frame.render.samples > 1 || path) {
     frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
   }
@@ -486,6 +519,11 @@ FrameConfig read_frame(sim::Config& config, FrameUse use) {
       config.fail("image.integrator", "the study is of images; rays of a file are for runs and sweeps");
     }
     read_rays(config, frame);
+  } else if (use != FrameUse::timing && use != FrameUse::frames && use != FrameUse::schemes &&
+             processors::program::sends_any_hit_rays(frame.render.integrator)) {
+    config.fail("image.integrator",
+                "the study is of whole images; \"shadow\" and \"occlusion\" are for runs, "
+                "sweeps, and the studies of frames and schemes");
   } else {
     read_image(config, frame);
   }

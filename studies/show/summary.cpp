@@ -66,6 +66,13 @@ void image_lines(Lines out, const run::RunResult& r) {
     fmt::format_to(out, "rays          {} (closest hit {}, any hit {}), in {} rows of {}\n",
                    tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
                    tables::grouped(totals.rays[1]), log.height, log.width);
+  } else if (processors::program::sends_any_hit_rays(log.integrator)) {
+    fmt::format_to(out, "image         {}, {}{} rays (camera {}, {} {})\n",
+                   keys::size_text(r.frame_config.render),
+                   log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+                   tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
+                   processors::program::integrator_names[static_cast<std::size_t>(log.integrator)],
+                   tables::grouped(totals.rays[1]));
   } else {
     fmt::format_to(
         out, "image         {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {}{})\n",

@@ -39,6 +39,8 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   std::string lights = of(needs.shining_lights, needs.lights, "lights shine");
   if (facts.render.integrator == processors::program::Integrator::rays) {
     choice = {false, false, given_rays};
+  } else if (facts.render.integrator == processors::program::Integrator::occlusion) {
+    choice = {true, true, "the rays into the hemisphere are all that is asked for"};
   } else if (!facts.render.shadows) {
     choice = {false, false, "image.shadows is false"};
   } else if (needs.shining_lights == 0) {
@@ -46,8 +48,9 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   } else if (needs.unlit == 0) {
     choice.needed = needs.shadow_rays;
     choice.exists = needs.shadow_rays;
-    choice.fact = needs.shadow_rays ? lights + ", and every material that asks for them shows it"
-                                    : "no material that a ray may meet asks for lights";
+    choice.fact = facts.render.integrator == processors::program::Integrator::shadow ? lights
+                  : needs.shadow_rays ? lights + ", and every material that asks for them shows it"
+                                      : "no material that a ray may meet asks for lights";
   } else {
     choice.fact = of(needs.unlit, needs.shaded, "materials that a ray may meet ask for lights and are black");
   }

@@ -26,7 +26,7 @@ class Finder {
         options_(options),
         everything_(options.voxel_cut > 0.0),
         in_view_(scene.triangles.size() + scene.quadrics.size()) {
-    if (is_path(options)) {
+    if (processors::program::asks_emitters(options.integrator)) {
       emitters_ = processors::program::Emitters(scene);
     }
   }
@@ -40,12 +40,28 @@ class Finder {
     }
     find_materials();
     find_rays();
+    if (processors::program::sends_any_hit_rays(options_.integrator)) {
+      only_any_hit_rays();
+      return needs_;
+    }
     find_textures();
     find_normals();
     return needs_;
   }
 
  private:
+  // Surfaces have neither colour nor material for the rays of which any hit will do; lights have a side.
+  void only_any_hit_rays() {
+    const bool shadows = options_.integrator == processors::program::Integrator::shadow;
+    needs_.textures.resize(scene_.textures.size());
+    needs_.unlit = 0;
+    needs_.shadow_rays = !shadows || needs_.shining_lights > 0;
+    for (std::uint32_t id = 0; id < scene_.triangles.size() && !scene_.normals.empty(); ++id) {
+      needs_.smooth += shadows && in_view_[id] ? 1U : 0U;
+    }
+    needs_.normals = needs_.smooth > 0;
+  }
+
   // An average may reflect although one of its materials is black and another has no weight.
   [[nodiscard]] bool reflects(const scenes::Material& material) const {
     return material.reflection > 0.0 && (everything_ || !is_black(material.specular_color));

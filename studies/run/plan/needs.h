@@ -19,7 +19,7 @@ struct SceneNeeds {
   std::vector<bool> materials;  ///< that may be shaded or asked for the light they emit, by index
   std::vector<bool> textures;   ///< whose texels may count in the image, by index
   std::uint64_t lights = 0;
-  /// With an intensity other than 0; with Integrator::path also the emissive triangles, together one light.
+  /// With an intensity other than 0; with asks_emitters() also the emissive triangles, together one light.
   std::uint64_t shining_lights = 0;
   bool shadow_rays = false;  ///< some may be sent that can change the image
   bool reflection_rays = false;

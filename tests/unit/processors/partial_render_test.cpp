@@ -137,7 +137,8 @@ INSTANTIATE_TEST_SUITE_P(OfAllKinds, PartialRender,
                          testing::Values(RenderOptions{}, RenderOptions{.samples = 3},
                                          RenderOptions{.floats = true}, RenderOptions{.mailboxes = true},
                                          RenderOptions{.voxel_cut = 2.0},
-                                         RenderOptions{.integrator = Integrator::path, .samples = 2}));
+                                         RenderOptions{.integrator = Integrator::path, .samples = 2},
+                                         RenderOptions{.integrator = Integrator::occlusion}));
 
 // A pixel of many samples may have more words than the recorder's first buffer.
 TEST(PartialRender, PixelsOfAnyLengthAreTakenOver) {

@@ -92,7 +92,10 @@ INSTANTIATE_TEST_SUITE_P(Procedural, AnyFrames,
                                          FrameCase{"lattice:2"}, FrameCase{"tree:4"}, FrameCase{"balls:2"},
                                          FrameCase{"mount:2"}, FrameCase{"balls:1", 5},
                                          FrameCase{"balls:1", 1, true}, FrameCase{"gears:1", 1, true},
-                                         FrameCase{"room:3", 2, false, Integrator::path}));
+                                         FrameCase{"room:3", 2, false, Integrator::path},
+                                         FrameCase{"room:3", 2, false, Integrator::shadow},
+                                         FrameCase{"balls:1", 1, true, Integrator::shadow},
+                                         FrameCase{"gears:1", 2, false, Integrator::occlusion}));
 
 /// Reads a pixel's words against the order of execution that tracer.h states.
 void check_order(std::span<const std::uint32_t> words, const RenderOptions& options) {
