@@ -16,7 +16,7 @@ struct Examples {
   std::array<std::string_view, 2> calls;
 };
 
-constexpr std::array<Examples, 26> table = {{
+constexpr std::array<Examples, 27> table = {{
     {"run",
      {"marti run configs/marti.toml",
       "marti run configs/marti.toml --set machine.nodes=64 --set scene.source=mine.glb -o out"}},
@@ -43,6 +43,9 @@ constexpr std::array<Examples, 26> table = {{
     {"study stability",
      {"marti study stability configs/marti.toml",
       "marti study stability configs/dram.toml -o out/stability"}},
+    {"study suite",
+     {"marti study suite configs/suites/default.toml -o out/suite",
+      "marti study suite mine.toml --set image.width=256 --set image.height=256 -o out/suite"}},
     {"sweep",
      {"marti sweep configs/sweep-small.toml -o out --best end --budget 10",
       "marti sweep configs/marti.toml --axis machine.nodes=1,4,16 --axis cache.size=4KiB..64KiB*2 -o out"}},

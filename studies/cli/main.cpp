@@ -67,6 +67,7 @@
 #include "studies/show/summary.h"
 #include "studies/show/verify_plan.h"
 #include "studies/stability/stability.h"
+#include "studies/suite/suite.h"
 #include "studies/tables/page_file.h"
 #include "studies/tables/result_directory.h"
 #include "studies/tables/text_units.h"
@@ -305,7 +306,7 @@ void run_study(const char* name, const StudyArguments& arguments, const sim::Sch
   }
 }
 
-void add_study_commands(CLI::App& app, StudyArguments& arguments) {
+void add_study_commands(CLI::App& app, StudyArguments& arguments, suite::SuiteArguments& suite_arguments) {
   CLI::App* study = app.add_subcommand("study", "Runs a study: many machines, tables and charts");
   study->require_subcommand(1);
   const auto add = [&](const char* name, const char* what, bool needs_file, sim::Schema (*schema)(),
@@ -328,6 +329,15 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments) {
       error::error_schema, error::run_error);
   add("stability", "Extremes of a scene and a machine, each against an oracle; exit 1 if one fails", false,
       stability::stability_schema, stability::run_stability);
+  CLI::App* const suite = study->add_subcommand(
+      "suite",
+      "Machines against a baseline over many scenes: the table that papers print; goes on where it was");
+  add_file(suite, suite_arguments.config)->required();
+  add_directory(suite, "-o,--output", suite_arguments.directory, "directory for the table, page and store")
+      ->required();
+  add_assignments(suite, suite_arguments.assignments);
+  suite->add_flag("--quiet", suite_arguments.quiet, "no progress");
+  suite->callback([&suite_arguments] { suite::suite_command(suite_arguments, print); });
 }
 
 void add_sweep_command(CLI::App& app, SweepArguments& arguments) {
@@ -638,7 +648,8 @@ int parse_and_run(int argc, char** argv) {
   add_explore_command(app, explore_arguments);
 
   StudyArguments study_arguments;
-  add_study_commands(app, study_arguments);
+  suite::SuiteArguments suite_arguments;
+  add_study_commands(app, study_arguments, suite_arguments);
 
   SweepArguments sweep_arguments;
   add_sweep_command(app, sweep_arguments);

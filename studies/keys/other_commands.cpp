@@ -13,6 +13,7 @@ void declare_sections_of_other_commands(sim::Schema& schema) {
   for (const std::string_view study : {"paper", "schemes", "error", "stability"}) {
     schema.elsewhere(study, "marti study " + std::string(study));
   }
+  schema.elsewhere("suite", "marti study suite");
   for (const std::string_view section : {"sweep", "question", "prices"}) {
     schema.elsewhere(section, "marti sweep");
   }

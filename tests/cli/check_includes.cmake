@@ -59,6 +59,7 @@ room(studies/report/plots host report/model tables)
 room(studies/report/page report/model report/plots tables)
 room(studies/compare figures keys report/model report/page report/plots run sweep/plan sweep/store tables)
 room(studies/report host report/model report/page report/plots report/read tables)
+room(studies/suite keys progress report sweep sweep/plan sweep/store tables)
 room(studies/frames host keys run tables)
 room(studies/operations host keys run tables)
 room(studies/paper host keys run tables)
@@ -67,7 +68,7 @@ room(studies/stability keys run tables)
 room(studies/error estimate figures host keys run tables)
 room(studies/explore estimate figures host keys progress report/model report/page report/plots report/read run show tables)
 room(studies/cli compare driven error estimate explore figures frames host keys log_file operations paper progress report run run/plan run/trace schemes show
-     stability sweep sweep/plan sweep/store tables)
+     stability suite sweep sweep/plan sweep/store tables)
 
 # A header pattern and the pattern of the files that may include it. C++'s own headers, which anyone may
 # include, have neither dot nor slash; nor have these of another library.

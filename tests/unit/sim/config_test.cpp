@@ -42,6 +42,31 @@ std::string error_of(std::string_view text, const std::vector<std::string>& assi
   return user_error_of([&] { (void)read(text, assignments); });
 }
 
+// Given in the file, in an assignment, or as the text that it was printed as, it is one value; a text is as
+// it was.
+TEST(Config, ACompositeIsKeptAsTomlInOneLine) {
+  Schema schema;
+  schema.text_or_composite("scene.source", "teapot:12", "Scene");
+  const auto value = [&](std::string_view text, std::vector<std::string> assignments = {}) {
+    const Config config = Config::from_text(schema, text, "a.toml", assignments);
+    const Config again = Config::from_text(
+        schema, "scene.source = " + print_values(schema.keys()[0], config.values("scene.source")), "b.toml");
+    EXPECT_EQ(again.text("scene.source"), config.text("scene.source"));
+    return config.text("scene.source");
+  };
+  const std::string both = "['a b.obj', {source = \"it's\", scale = [1, 2.5], deep = {on = true}}]";
+  EXPECT_EQ(value("[scene]\nsource = [\n  \"a b.obj\", # first\n  { source = \"it's\", scale = [1, 2.5], "
+                  "deep.on = true },\n]\n"),
+            both);
+  EXPECT_EQ(value("[[scene.source]]\n'a \"name\"' = 1\n"), "[{'a \"name\"' = 1}]");
+  EXPECT_EQ(value("", {"scene.source=['a b.obj', {source=\"it's\",scale=[1,2.5],deep={on=true}}]"}), both);
+  EXPECT_EQ(value("", {"scene.source={source=\"a\"}"}), "{source = 'a'}");
+  EXPECT_EQ(value("scene.source = \"a[1]\""), "a[1]");
+  EXPECT_EQ(
+      user_error_of([&] { (void)value("scene.source = 3"); }),
+      "a.toml:1: scene.source: must be a text in quotation marks, a list or a table, not the integer 3");
+}
+
 TEST(Config, DefaultsHoldWhereNothingIsGiven) {
   const Config config = read("");
   EXPECT_EQ(config.size("cache.size"), 16 * 1024);

@@ -1,0 +1,216 @@
+#include "studies/suite/suite_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "scenes/open.h"
+#include "scenes/scene_list.h"
+#include "sim/config_errors.h"
+#include "sim/error.h"
+#include "sim/nearest.h"
+#include "sim/sha256.h"
+#include "sim/shown.h"
+
+namespace marti::studies::suite {
+
+namespace {
+
+using sim::DocumentEntry;
+using sim::DocumentValue;
+
+constexpr std::size_t most_scenes = 1000;
+constexpr std::size_t longest_name = 60;
+
+class SuiteReader {
+ public:
+  explicit SuiteReader(const sim::Config& config)
+      : config_(config), directory_(std::filesystem::absolute(config.name()).parent_path()) {}
+
+  SuiteFile read() {
+    const DocumentValue::Table& section = config_.free_section("suite");
+    const int line = std::max(1, config_.free_section_line("suite"));
+    if (section.empty()) {
+      fail(line, "suite", "is missing: the baseline, and a table [[suite.scene]] for each scene");
+    }
+    refuse_others(section, "suite", {"baseline", "scene"});
+    suite_.baseline = text_of(section, line, "suite", "baseline", true);
+    suite_.place = sim::place_in_file(config_.name(), find(section, "baseline")->line, "suite.baseline");
+    const DocumentEntry* const scenes = find(section, "scene");
+    const DocumentValue::List* const list = scenes == nullptr ? nullptr : scenes->value.list();
+    if (list == nullptr || list->empty() || list->size() > most_scenes) {
+      fail(line, "suite.scene", "must be 1 to 1000 tables, [[suite.scene]]");
+    }
+    for (const DocumentValue& scene : *list) {
+      add(scene);
+    }
+    return std::move(suite_);
+  }
+
+ private:
+  [[noreturn]] void fail(int line, std::string_view key, const std::string& message) const {
+    sim::fail_at(config_, line, key, message);
+  }
+
+  void refuse_others(const DocumentValue::Table& table, const std::string& place,
+                     const std::vector<std::string>& keys) const {
+    for (const DocumentEntry& entry : table) {
+      if (std::ranges::find(keys, entry.name) == keys.end()) {
+        fail(entry.line, place + "." + entry.name, "unknown key" + sim::did_you_mean(entry.name, keys));
+      }
+    }
+  }
+
+  [[nodiscard]] std::string text_of(const DocumentValue::Table& table, int line, const std::string& place,
+                                    const std::string& key, bool needed) const {
+    const DocumentEntry* const entry = find(table, key);
+    if (entry == nullptr) {
+      if (needed) {
+        fail(line, place + "." + key, "is missing");
+      }
+      return {};
+    }
+    const std::string* const text = entry->value.text();
+    if (text == nullptr || text->empty()) {
+      fail(entry->line, place + "." + key, "must be a text, not " + describe(entry->value));
+    }
+    return *text;
+  }
+
+  void add(const DocumentValue& value) {
+    const DocumentValue::Table* const table = value.table();
+    if (table == nullptr) {
+      fail(value.line, "suite.scene", "must be a table, not " + describe(value));
+    }
+    refuse_others(*table, "suite.scene", {"name", "source", "found", "licence", "sha256"});
+    SuiteScene scene;
+    scene.name = text_of(*table, value.line, "suite.scene", "name", true);
+    const bool plain = std::ranges::all_of(
+        scene.name, [](char c) { return c >= ' ' && c <= '~' && c != '\'' && c != '"' && c != '\\'; });
+    if (!plain || scene.name.size() > longest_name) {
+      fail(value.line, "suite.scene.name",
+           "must have 1 to 60 printable ASCII characters without quotation marks and backslashes");
+    }
+    scene.source = source_of(*table, value.line);
+    scene.found = text_of(*table, value.line, "suite.scene", "found", false);
+    static_cast<void>(text_of(*table, value.line, "suite.scene", "licence", false));
+    look_for(scene, text_of(*table, value.line, "suite.scene", "sha256", false));
+    for (const SuiteScene& other : suite_.scenes) {
+      if (other.name == scene.name || other.source == scene.source) {
+        fail(value.line, "suite.scene", "has the name or the source of another scene, " + other.name);
+      }
+    }
+    suite_.scenes.push_back(std::move(scene));
+  }
+
+  // A text, or what scene.source may be beside it.
+  [[nodiscard]] std::string source_of(const DocumentValue::Table& table, int line) const {
+    const DocumentEntry* const entry = find(table, "source");
+    if (entry == nullptr) {
+      fail(line, "suite.scene.source", "is missing");
+    }
+    const DocumentValue& value = entry->value;
+    const std::string source = value.text() != nullptr ? *value.text() : print_in_line(value);
+    try {
+      return scenes::source_from(source, directory_);
+    } catch (const sim::UserError& error) {
+      fail(entry->line, "suite.scene.source", error.what());
+    }
+  }
+
+  static void look_for(SuiteScene& scene, const std::string& sha256) {
+    std::vector<std::string> sources = {scene.source};
+    if (scenes::is_scene_list(scene.source)) {
+      sources.clear();
+      for (const scenes::ListedScene& entry : scenes::read_scene_list(scene.source)) {
+        sources.push_back(entry.source);
+      }
+    }
+    for (const std::string& source : sources) {
+      std::error_code error;
+      if (scenes::names_a_file(source) && !std::filesystem::exists(source, error)) {
+        scene.missing = "there is no " + sim::shown(source);
+        return;
+      }
+    }
+    if (!sha256.empty() && sim::sha256_of_file(scene.source) != sha256) {
+      scene.missing = sim::shown(scene.source) + " is another file: its SHA-256 is not " + sim::shown(sha256);
+    }
+  }
+
+  const sim::Config& config_;
+  std::filesystem::path directory_;
+  SuiteFile suite_;
+};
+
+std::string quoted(const std::string& text) {
+  std::string literal = "'";
+  for (const char c : text) {
+    literal += c == '\'' ? "''" : std::string(1, c);
+  }
+  return literal + "'";
+}
+
+}  // namespace
+
+SuiteFile read_suite(const sim::Config& config) { return SuiteReader(config).read(); }
+
+sweep::Question question_of(const SuiteFile& suite) {
+  std::vector<const SuiteScene*> there;
+  std::string name = "CASE p.\"scene.source\"";
+  for (const SuiteScene& scene : suite.scenes) {
+    if (scene.missing.empty()) {
+      there.push_back(&scene);
+      name += " WHEN " + quoted(scene.source) + " THEN " + quoted(scene.name);
+    }
+  }
+  name += " END";
+  std::string same = "b.\"scene.source\" = p.\"scene.source\" AND ";
+  if (there.size() == 1) {  // what is alike in all points is no column
+    name = quoted(there.front()->name);
+    same.clear();
+  }
+  // Each machine beside the baseline of its scene.
+  const std::string pairs = fmt::format("points p, points b WHERE {}b.point = {} AND p.point <> b.point",
+                                        same, quoted(suite.baseline));
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> shares = {
+      {{"speedup", "1.0 * b.end / p.end"},
+       {"relative_energy", "1.0 * p.energy / b.energy"},
+       {"relative_energy_delay", "1.0 * p.energy_delay / b.energy_delay"},
+       {"relative_misses", "1.0 * p.misses / b.misses"},
+       {"relative_traffic", "1.0 * p.memory_bytes_read / b.memory_bytes_read"}}};
+  std::string each;
+  std::string means;
+  for (const auto& [column, value] : shares) {
+    each += fmt::format(", {} AS {}", value, column);
+    // Without a value where a scene has none, so that no mean is of fewer scenes than another.
+    means +=
+        fmt::format(", CASE WHEN COUNT({0}) = COUNT(*) THEN exp(avg(ln({0}))) END AS {1}", value, column);
+  }
+  const std::string place = suite.place;
+  sweep::Question question;
+  question.asks = "How much faster than " + suite.baseline + " are the machines?";
+  question.answer = {
+      fmt::format("SELECT printf('%s is %.2f times as fast as %s in the geometric mean of %d scenes (%.2f to "
+                  "%.2f)', p.point, exp(avg(ln(1.0 * b.end / p.end))), b.point, COUNT(*), MIN(1.0 * b.end / "
+                  "p.end), MAX(1.0 * b.end / p.end)) FROM {} GROUP BY p.point ORDER BY MIN(p.ordinal)",
+                  pairs),
+      place};
+  question.tables.push_back(
+      {"suite",
+       "Machines against " + suite.baseline +
+           ": its frame time over theirs, and what they take as shares of it",
+       {fmt::format("SELECT * FROM (SELECT {} AS scene, p.point AS machine{}, p.end / 1e9 AS frame_ms FROM "
+                    "{} ORDER BY "
+                    "p.ordinal) UNION ALL SELECT * FROM (SELECT 'geometric mean', p.point{}, NULL FROM {} "
+                    "GROUP BY p.point ORDER BY MIN(p.ordinal))",
+                    name, each, pairs, means, pairs),
+        place}});
+  return question;
+}
+
+}  // namespace marti::studies::suite
