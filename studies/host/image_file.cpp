@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -34,35 +35,75 @@ void load_one_by_one() {
   }
 }
 
-const ImageCodec& load_codec() {
-  void* function = nullptr;
-  std::string why;
-  // Some of those libraries start threads while they are loaded and throw when they get none; to unwind their
-  // half-made pool of threads would wait for ever. A thread of its own has no catch, so nothing is unwound,
-  // and the program ends with the message of studies/cli/last_words.cpp.
-  std::thread([&] {
+// The codec's library, loaded by a thread of its own, which others need not wait for.
+//
+// Some of the libraries that it needs start threads while they are loaded and throw when they get none; to
+// unwind their half-made pool of threads would wait for ever. The thread has no catch, so nothing is unwound,
+// and the program ends with the message of studies/cli/last_words.cpp.
+class CodecLibrary {
+ public:
+  CodecLibrary() = default;
+  CodecLibrary(const CodecLibrary&) = delete;
+  CodecLibrary& operator=(const CodecLibrary&) = delete;
+  ~CodecLibrary() {
+    if (loading_.joinable()) {
+      loading_.join();
+    }
+  }
+
+  /// Has it loaded, if that is not done yet; after a failure again.
+  void begin() {
+    const std::lock_guard lock(mutex_);
+    begin_locked();
+  }
+
+  /// Waits until it is loaded.
+  const ImageCodec& codec() {
+    const std::lock_guard lock(mutex_);
+    begin_locked();
+    if (loading_.joinable()) {
+      loading_.join();
+    }
+    if (codec_ == nullptr) {
+      throw sim::UserError(
+          "image files can be neither read nor written, because a library cannot be loaded: " + why_);
+    }
+    return *codec_;
+  }
+
+ private:
+  void begin_locked() {
+    if (codec_ == nullptr && !loading_.joinable()) {
+      loading_ = std::thread([this] { load(); });
+    }
+  }
+
+  void load() {
     load_one_by_one();
     // Found as the libraries are that the program is linked to: by the loader's settings, then its RUNPATH
     // (studies/CMakeLists.txt). It stays loaded, because OpenImageIO keeps threads.
     void* const library = dlopen("marti_image_codec.so", RTLD_LAZY);
-    function = library == nullptr ? nullptr : dlsym(library, "marti_image_codec");
+    void* const function = library == nullptr ? nullptr : dlsym(library, "marti_image_codec");
     if (function == nullptr) {
       const char* const reason = dlerror();
-      why = reason == nullptr ? "marti_image_codec.so" : reason;
+      why_ = reason == nullptr ? "marti_image_codec.so" : reason;
+    } else {
+      codec_ = reinterpret_cast<decltype(&marti_image_codec)>(function)();
     }
-  }).join();
-  if (function == nullptr) {
-    throw sim::UserError("image files can be neither read nor written, because a library cannot be loaded: " +
-                         why);
   }
-  return *reinterpret_cast<decltype(&marti_image_codec)>(function)();
+
+  std::mutex mutex_;
+  std::thread loading_;  // what it writes is read only after it has been joined
+  const ImageCodec* codec_ = nullptr;
+  std::string why_;
+};
+
+CodecLibrary& codec_library() {
+  static CodecLibrary library;
+  return library;
 }
 
-// Loaded at the first use; after a failure the next use tries again.
-const ImageCodec& codec() {
-  static const ImageCodec& loaded = load_codec();
-  return loaded;
-}
+const ImageCodec& codec() { return codec_library().codec(); }
 
 // IEC 61966-2-1, to the nearest byte.
 std::uint8_t srgb_byte(float linear) {
@@ -73,6 +114,8 @@ std::uint8_t srgb_byte(float linear) {
 }
 
 }  // namespace
+
+void begin_to_load_image_library() { codec_library().begin(); }
 
 void load_image_library() { static_cast<void>(codec()); }
 

@@ -15,8 +15,11 @@
 
 namespace marti::studies::host {
 
-/// Loads OpenImageIO now, so that a long run that will write images fails at its begin if that cannot be
-/// loaded. Throws UserError.
+/// Begins to load OpenImageIO, which takes a tenth of a second or two, while the caller goes on.
+void begin_to_load_image_library();
+
+/// Returns when OpenImageIO is loaded, so that long work that will write images does not begin if it cannot
+/// be loaded. Throws UserError.
 void load_image_library();
 
 /// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal

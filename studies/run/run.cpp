@@ -12,6 +12,7 @@
 #include "processors/replay/host_bytes.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
+#include "studies/host/image_file.h"
 #include "studies/keys/key_parts.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/other_commands.h"
@@ -304,6 +305,9 @@ RunResult run(sim::Config& config, RunOptions options) {
   sim::with_places(config, [&] {
     result.functional =
         options.functional ? std::move(*options.functional) : run_functional(result.frame_config);
+    if (!options.directory.empty()) {
+      host::load_image_library();  // before the machine is timed, which may take long
+    }
     std::shared_ptr<const processors::walk::StrippedLog> stripped = time_frame(record, options, result);
     if (options.what_helps != helps::Measuring::none) {
       result.helps = measure_help(config, options, std::move(stripped), result);

@@ -70,7 +70,8 @@ struct RunResult {
 };
 
 struct RunOptions {
-  /// Where what is recorded while the machine runs goes; it must exist. Empty: nothing may be recorded.
+  /// Where the images and what is recorded while the machine runs go; it must exist. Empty: nothing may be
+  /// recorded.
   std::filesystem::path directory{};
   KeptItems keep{};
   /// The functional run of the frame that the configuration describes; empty: it is to be made.

@@ -90,7 +90,7 @@ sim::MadeDirectory prepare_run(const std::filesystem::path& directory) {
   tables::refuse_other_results(directory, tables::run_name);
   sim::MadeDirectory made = prepare_output(directory);
   if (!directory.empty()) {
-    host::load_image_library();
+    host::begin_to_load_image_library();
   }
   return made;
 }

@@ -15,8 +15,8 @@ namespace marti::studies::show {
 /// nothing.
 [[nodiscard]] sim::MadeDirectory prepare_output(const std::filesystem::path& directory);
 
-/// prepare_output() for the files of a run: refuses a directory with another kind of result, and finds out
-/// that images can be written.
+/// prepare_output() for the files of a run: refuses a directory with another kind of result, and begins to
+/// load what writes images.
 [[nodiscard]] sim::MadeDirectory prepare_run(const std::filesystem::path& directory);
 
 struct WrittenRun {
