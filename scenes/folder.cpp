@@ -20,7 +20,9 @@ std::vector<std::filesystem::path> scene_files(const SourceFile& folder) {
   std::error_code error;
   std::filesystem::directory_iterator entry(folder.path(), error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    if (names_a_file(entry->path().filename().string())) {
+    // A pbrt file is a whole scene, or a part of one that another file includes.
+    const std::string name = entry->path().filename().string();
+    if (names_a_file(name) && entry->path().extension() != ".pbrt") {
       files.push_back(entry->path());
     }
     if (files.size() > most_parts) {

@@ -6,13 +6,13 @@
 #include <glm/common.hpp>
 
 #include "scenes/image_file.h"
+#include "scenes/surface_weights.h"
 #include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr double largest_shininess = 1e5;
 constexpr const char* no_image = "textures that are missing or cannot be decoded, by none";
 
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
@@ -56,22 +56,6 @@ bool apply_own_weights(const tinygltf::Value& own, Material& material) {
   material.ior = *ior;
   material.shininess = *shininess;
   return true;
-}
-
-/// Computes the weights of gltf.h.
-void set_weights(Material& material, double metallic, double roughness, double transmission) {
-  const double root = (material.ior - 1.0) / (material.ior + 1.0);
-  const double f0 = root * root;
-  const double gloss = (1.0 - roughness) * (1.0 - roughness);
-  const double dielectric = (1.0 - metallic) * (1.0 - gloss * f0);
-  material.diffuse = dielectric * (1.0 - transmission) + metallic * (1.0 - gloss);
-  material.reflection = gloss * (metallic + (1.0 - metallic) * f0);
-  material.transmission = dielectric * transmission;
-  material.highlight = metallic + (1.0 - metallic) * f0;
-  const double r2 = roughness * roughness;
-  material.shininess =
-      r2 * r2 > 0.0 ? std::clamp(2.0 / (r2 * r2) - 2.0, 1.0, largest_shininess) : largest_shininess;
-  material.specular_color = glm::mix(glm::dvec3(1.0), material.color, metallic);
 }
 
 }  // namespace
@@ -188,8 +172,8 @@ Material Materials::convert(int index, Use& use) {
         largest_emission, strength * checked_number(model_, source.emissiveFactor[i], 0.0, largest_emission,
                                                     name + ": the emissive factor"));
   }
-  set_weights(material, unit(pbr.metallicFactor, "the metallic factor"),
-              unit(pbr.roughnessFactor, "the roughness factor"), transmission);
+  set_surface_weights(material, unit(pbr.metallicFactor, "the metallic factor"),
+                      unit(pbr.roughnessFactor, "the roughness factor"), transmission);
   if (const tinygltf::Value* own = own_extras(source.extras);
       own != nullptr && !apply_own_weights(*own, material)) {
     left_out_.features["materials' own weights (extras.marti) that are incomplete or out of range"] += 1;

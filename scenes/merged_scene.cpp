@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "scenes/append_geometry.h"
 #include "scenes/camera_file.h"
 #include "scenes/default_view.h"
 
@@ -15,16 +16,6 @@ namespace {
 template <class T>
 void append(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
-/// A list that is empty or as long as the positions, and its part for more of them.
-template <class T>
-void append_attribute(std::vector<T>& to, std::size_t before, std::vector<T>&& from, std::size_t more) {
-  if (!to.empty() || !from.empty()) {
-    to.resize(before, T(0.0));
-    from.resize(more, T(0.0));
-    append(to, std::move(from));
-  }
 }
 
 }  // namespace
@@ -64,29 +55,16 @@ void MergedScene::open(std::string_view spec, const std::filesystem::path& base_
 }
 
 void MergedScene::add(Scene part, const std::string& name) {
-  const auto vertices = static_cast<std::uint32_t>(scene_.positions.size());
   const auto materials = static_cast<std::uint32_t>(scene_.materials.size());
   const auto textures = static_cast<std::uint32_t>(scene_.textures.size());
-  const auto sources =
-      static_cast<std::uint32_t>(scene_.quadrics.empty() ? 0 : scene_.quadrics.back().source + 1);
   const std::uint64_t most = whole_.options().max_triangles;
-  if (scene_.triangles.size() + part.triangles.size() > most || vertices + part.positions.size() > most ||
+  if (scene_.triangles.size() + part.triangles.size() > most ||
+      scene_.positions.size() + part.positions.size() > most ||
       scene_.quadrics.size() + part.quadrics.size() > most) {
     whole_.fail("its parts have more than " + std::to_string(most) +
                 " primitives of a kind or vertices, which is more than is accepted");
   }
   whole_.take_memory(host_bytes(part), "its parts take");
-  for (Triangle& triangle : part.triangles) {
-    for (std::uint32_t& vertex : triangle.vertex) {
-      vertex += vertices;
-    }
-    triangle.material += materials;
-    triangle.polygon += static_cast<std::uint32_t>(scene_.polygons);
-  }
-  for (Quadric& quadric : part.quadrics) {
-    quadric.material += materials;
-    quadric.source += sources;
-  }
   for (Material& material : part.materials) {
     material.texture += material.texture == no_texture ? 0 : textures;
   }
@@ -97,12 +75,7 @@ void MergedScene::add(Scene part, const std::string& name) {
     scene_.ambient = part.ambient;
   }
   scene_.lights_are_all = scene_.lights_are_all || part.lights_are_all;
-  scene_.polygons += part.polygons;
-  append_attribute(scene_.normals, vertices, std::move(part.normals), part.positions.size());
-  append_attribute(scene_.uvs, vertices, std::move(part.uvs), part.positions.size());
-  append(scene_.positions, std::move(part.positions));
-  append(scene_.triangles, std::move(part.triangles));
-  append(scene_.quadrics, std::move(part.quadrics));
+  append_geometry(scene_, part, materials);
   append(scene_.materials, std::move(part.materials));
   append(scene_.textures, std::move(part.textures));
   append(scene_.lights, std::move(part.lights));

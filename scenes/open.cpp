@@ -12,6 +12,7 @@
 #include "scenes/gltf.h"
 #include "scenes/obj.h"
 #include "scenes/part_error.h"
+#include "scenes/pbrt.h"
 #include "scenes/ply.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_list.h"
@@ -111,6 +112,10 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
   if (ending == "ply") {
     refuse_parts(spec, "a PLY file", options.file);
     return open_ply(path_of(spec, options), options.file);
+  }
+  if (ending == "pbrt") {
+    refuse_parts(spec, "a pbrt file", options.file);
+    return open_pbrt(path_of(spec, options), options.file, decode);
   }
   if (ending == "camera") {
     throw sim::UserError("scene '" + sim::shown(spec) +

@@ -22,14 +22,15 @@ struct OpenOptions {
 };
 
 /// The endings of the names of files that can be read, without the dot.
-inline constexpr std::array<std::string_view, 5> file_endings = {"gltf", "glb", "obj", "ply", "camera"};
+inline constexpr std::array<std::string_view, 6> file_endings = {"gltf", "glb",  "obj",
+                                                                 "ply",  "pbrt", "camera"};
 
 /// Opens `spec`: a file when it has one of these endings (in any case), a folder of such files
 /// (scenes/folder.h) when it ends with a slash, a list of these (scenes/scene_list.h) when it begins with a
 /// bracket or a brace, else a procedural scene such as "teapot:12"; all but glTF files have one pose. A
 /// camera file holds no scene and is for folders and lists. `options.file.time` is ignored. Choosing a scene,
 /// a camera or an animation other than "none" is an error for all but a glTF file. Throws UserError as
-/// open_gltf, open_obj, open_ply, open_folder and make_procedural do.
+/// open_gltf, open_obj, open_ply, open_pbrt, open_folder and make_procedural do.
 [[nodiscard]] AnimatedScene open_animated(std::string_view spec, const OpenOptions& options,
                                           const ImageDecoder& decode);
 

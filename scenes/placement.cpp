@@ -37,21 +37,6 @@ std::pair<double, double> cosine_and_sine(double degrees) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// The factor by which all lengths grow; 0 if there is no such factor.
-double common_scale(const glm::dmat3& linear) {
-  const double scale = glm::length(linear[0]);
-  constexpr double rounding = 1e-12;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double expected = i == j ? 1.0 : 0.0;
-      if (std::abs(glm::dot(linear[i] / scale, linear[j] / scale) - expected) > rounding) {
-        return 0.0;
-      }
-    }
-  }
-  return scale;
-}
-
 class Placing {
  public:
   Placing(const Placement& placement, const std::string& name, Scene& scene)
@@ -137,6 +122,20 @@ bool is_singular(const glm::dmat3& linear) {
   }
   constexpr double flat = 1e-10;
   return !(std::abs(glm::determinant(unit)) > flat);
+}
+
+double common_scale(const glm::dmat3& linear) {
+  const double scale = glm::length(linear[0]);
+  constexpr double rounding = 1e-12;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double expected = i == j ? 1.0 : 0.0;
+      if (std::abs(glm::dot(linear[i] / scale, linear[j] / scale) - expected) > rounding) {
+        return 0.0;
+      }
+    }
+  }
+  return scale;
 }
 
 glm::dmat3 rotation_by(const glm::dvec3& degrees) {

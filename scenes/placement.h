@@ -19,6 +19,9 @@ struct Placement {
 /// Whether a volume would become flat: the columns' determinant is at most 1e-10 of their lengths' product.
 [[nodiscard]] bool is_singular(const glm::dmat3& linear);
 
+/// The factor by which all lengths grow; 0 if there is no such factor.
+[[nodiscard]] double common_scale(const glm::dmat3& linear);
+
 /// Turned about the x axis, then about y, then about z, in degrees. Whole quarter turns are exact.
 [[nodiscard]] glm::dmat3 rotation_by(const glm::dvec3& degrees);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <new>
 #include <string>
@@ -23,6 +24,9 @@ namespace {
 
 constexpr std::array<const char*, 3> position_names = {"x", "y", "z"};
 constexpr std::array<const char*, 3> normal_names = {"nx", "ny", "nz"};
+// The format has no names for these; programs use any of them.
+constexpr std::array<std::array<const char*, 2>, 4> coordinate_names = {
+    {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
 constexpr int not_used = -1;
 
 /// The corners of all faces, which may come before the vertices that they refer to.
@@ -118,19 +122,20 @@ class PlyReader {
                      sim::shown(element.name, 40) + "'.");
   }
 
-  /// For each property of the vertices the place of its value: 0 to 2 in the position, 3 to 5 in the normal.
+  /// For each property of the vertices the place of its value: 0 to 2 in the position, 3 to 5 in the normal,
+  /// 6 and 7 in the texture coordinates.
   std::vector<int> places_of(const PlyElement& element) {
     std::vector<int> places(element.properties.size(), not_used);
-    const auto give_places = [&](const std::array<const char*, 3>& names, int first) {
-      std::array<std::size_t, 3> at{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto found = element.find(names[axis]);
+    const auto give_places = [&](const auto& names, int first) {
+      std::vector<std::size_t> at;
+      for (const char* const name : names) {
+        const auto found = element.find(name);
         if (!found || element.properties[*found].count) {
           return false;
         }
-        at[axis] = *found;
+        at.push_back(*found);
       }
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < at.size(); ++axis) {
         places[at[axis]] = first + static_cast<int>(axis);
       }
       return true;
@@ -139,7 +144,9 @@ class PlyReader {
       file_.fail("its vertices lack one of the properties x, y and z, or it is a list");
     }
     has_normals_ = give_places(normal_names, 3);
-    properties_used_ += has_normals_ ? 6 : 3;
+    has_coordinates_ = std::any_of(coordinate_names.begin(), coordinate_names.end(),
+                                   [&](const auto& names) { return give_places(names, 6); });
+    properties_used_ += 3 + (has_normals_ ? 3U : 0U) + (has_coordinates_ ? 2U : 0U);
     std::vector<std::string> unused;
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (places[i] == not_used) {
@@ -154,12 +161,15 @@ class PlyReader {
 
   void read_vertices(const PlyElement& element) {
     const std::vector<int> places = places_of(element);
-    file_.take_memory(vertices_ * sizeof(glm::dvec3) * (has_normals_ ? 2 : 1), "its vertices take");
+    file_.take_memory(vertices_ * (sizeof(glm::dvec3) * (has_normals_ ? 2 : 1) +
+                                   (has_coordinates_ ? sizeof(glm::dvec2) : 0)),
+                      "its vertices take");
     scene_.positions.reserve(vertices_);
     scene_.normals.reserve(has_normals_ ? vertices_ : 0);
+    scene_.uvs.reserve(has_coordinates_ ? vertices_ : 0);
     for (std::uint64_t i = 0; i < vertices_; ++i) {
       values_.begin(element, i);
-      std::array<double, 6> given{};
+      std::array<double, 8> given{};
       for (std::size_t p = 0; p < places.size(); ++p) {
         if (places[p] == not_used) {
           pass_over(element.properties[p]);
@@ -173,6 +183,10 @@ class PlyReader {
       scene_.positions.emplace_back(given[0], given[1], given[2]);
       if (has_normals_) {
         scene_.normals.push_back(unit_or_zero({given[3], given[4], given[5]}));
+      }
+      if (has_coordinates_) {
+        const glm::dvec2 uv(given[6], 1.0 - given[7]);
+        scene_.uvs.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0));
       }
     }
   }
@@ -254,6 +268,7 @@ class PlyReader {
   std::uint64_t properties_ = 0;
   std::uint64_t properties_used_ = 0;
   bool has_normals_ = false;
+  bool has_coordinates_ = false;
   Faces faces_;
   std::vector<std::string> notes_;
 };

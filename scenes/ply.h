@@ -1,7 +1,8 @@
 // Reading PLY files (.ply; G. Turk, The PLY Polygon File Format, Stanford 1994), as text and in binary of
 // both orders of bytes.
 //
-// Read: the element "vertex" with x, y, z and, if it has them, nx, ny, nz; the element "face" with the list
+// Read: the element "vertex" with x, y, z and, if it has them, nx, ny, nz, and texture coordinates u, v, or
+// s, t, or either after "texture_" (v goes up, and is turned); the element "face" with the list
 // vertex_indices or vertex_index, of any integer type, each a polygon (scenes/polygon_mesh.h). Elements and
 // properties may come in any order. All other properties, colours too, and other elements are left out with a
 // note. Lines of the header that are no statement, and in text other types than PLY's and normals that are

@@ -572,7 +572,7 @@ void add_scene_commands(CLI::App& app, SceneArguments& arguments) {
   CLI::App* info = scene->add_subcommand("info", "Describes a scene");
   CLI::App* save = scene->add_subcommand("export", "Writes a scene, in one pose, as binary glTF");
   for (CLI::App* command : {info, save}) {
-    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf, .glb, .obj or .ply file")
+    command->add_option("SOURCE", arguments.source, "name:size, or a .gltf, .glb, .obj, .ply or .pbrt file")
         ->type_name("SCENE")
         ->required();
     command->add_option("--scene", arguments.file.scene, "scene of the file, by index or name")

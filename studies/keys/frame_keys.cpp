@@ -145,7 +145,7 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.section("scene", "what is rendered");
   schema.text_or_composite(
       "scene.source", "teapot:12",
-      "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj or .ply file, "
+      "a procedural scene as name:size (see `marti scene list`), or a .gltf, .glb, .obj, .ply or .pbrt file, "
       "or a folder of such files with a slash at its end, relative to the configuration (with --set: to the "
       "current directory); or a list of these as one scene, also of .camera files, in which an entry may be "
       "a "

@@ -70,7 +70,9 @@ std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> bytes) {
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 void check(const scenes::Scene& scene) {
-  promise(!scene.triangles.empty() && scene.triangles.size() <= most_triangles, "number of triangles");
+  promise(scene.triangles.size() + scene.quadrics.size() > 0, "neither triangles nor curved primitives");
+  promise(scene.triangles.size() <= most_triangles && scene.quadrics.size() <= most_triangles,
+          "too many of them");
   promise(scene.normals.empty() || scene.normals.size() == scene.positions.size(), "number of normals");
   promise(scene.uvs.empty() || scene.uvs.size() == scene.positions.size(), "number of texture coordinates");
   for (const scenes::Triangle& triangle : scene.triangles) {
@@ -152,6 +154,11 @@ void try_obj(std::span<const std::uint8_t> bytes) {
 void try_ply(std::span<const std::uint8_t> bytes) {
   write("fuzz.ply", bytes);
   try_file("fuzz.ply");
+}
+
+void try_pbrt(std::span<const std::uint8_t> bytes) {
+  write("fuzz.pbrt", bytes);
+  try_file("fuzz.pbrt");
 }
 
 }  // namespace marti::fuzz

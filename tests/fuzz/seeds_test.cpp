@@ -114,6 +114,10 @@ TEST(FuzzSeeds, ObjFiles) {
   try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/obj", {".obj"}), "obj"), try_obj);
 }
 
+TEST(FuzzSeeds, PbrtFiles) {
+  try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/pbrt", {".pbrt"}), "pbrt"), try_pbrt);
+}
+
 TEST(FuzzSeeds, PlyFiles) {
   try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/ply", {".ply"}), "ply"), try_ply);
 }

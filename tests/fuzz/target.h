@@ -35,4 +35,7 @@ void try_obj(std::span<const std::uint8_t> bytes);
 /// The bytes as a PLY file.
 void try_ply(std::span<const std::uint8_t> bytes);
 
+/// The bytes as a pbrt file.
+void try_pbrt(std::span<const std::uint8_t> bytes);
+
 }  // namespace marti::fuzz

@@ -1,0 +1,407 @@
+#include "scenes/pbrt.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <new>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "scenes/append_geometry.h"
+#include "scenes/default_view.h"
+#include "scenes/open.h"
+#include "scenes/pbrt_color.h"
+#include "scenes/pbrt_material.h"
+#include "scenes/pbrt_shape.h"
+#include "scenes/pbrt_text.h"
+#include "scenes/pbrt_transform.h"
+#include "scenes/placement.h"
+#include "scenes/source_file.h"
+#include "scenes/tessellate.h"
+#include "scenes/text_lines.h"
+#include "scenes/vertex_values.h"
+
+namespace marti::scenes {
+
+namespace pbrt {
+namespace {
+
+/// Statements with a kind and parameters that say how pbrt renders, or what it does while it reads.
+constexpr std::array<std::string_view, 5> rendering = {"Sampler", "Integrator", "PixelFilter", "Accelerator",
+                                                       "Option"};
+
+constexpr std::size_t most_states = 1024;
+constexpr double largest_light = 1e12;
+
+/// What a shape has that is not its own.
+struct State {
+  glm::dmat4 transform{1.0};
+  std::size_t material = 0;
+  glm::dvec3 emission{0.0};
+  bool reversed = false;
+};
+
+/// The geometry between ObjectBegin and ObjectEnd, in the coordinates of the world.
+struct Object {
+  Scene scene;
+  std::uint64_t bytes = 0;
+};
+
+class Reader {
+ public:
+  Reader(const SourceFile& file, const ImageDecoder& decode)
+      : file_(file), text_(file), materials_(file, text_, decode, scene_, left_out_) {
+    left_out_.strict = file.options().strict;
+  }
+
+  AnimatedScene read() {
+    while (const std::optional<std::string> name = text_.next()) {
+      statement(*name);
+    }
+    if (!states_.empty() || object_ != nullptr) {
+      file_.fail(object_ != nullptr ? "an ObjectBegin has no ObjectEnd"
+                                    : "an AttributeBegin has no AttributeEnd");
+    }
+    return finish();
+  }
+
+ private:
+  void statement(const std::string& name) {
+    if (is_transform(name)) {
+      const glm::dmat4 after = transform_by(name, text_, state_.transform);
+      (moves_ ? moved_ : state_.transform) = after;
+    } else if (name == "AttributeBegin" || name == "TransformBegin") {
+      if (states_.size() == most_states) {
+        text_.fail("more than " + std::to_string(most_states) +
+                   " statements AttributeBegin lie in each other");
+      }
+      states_.push_back(state_);
+    } else if (name == "AttributeEnd" || name == "TransformEnd") {
+      if (states_.empty()) {
+        text_.fail(name + " without its begin");
+      }
+      state_ = states_.back();
+      states_.pop_back();
+    } else if (name == "Include" || name == "Import") {
+      text_.include(text_.text());
+    } else if (name == "WorldBegin") {
+      state_ = {};
+      named_transforms_["world"] = state_.transform;
+    } else if (name == "ReverseOrientation") {
+      state_.reversed = !state_.reversed;
+    } else if (name == "CoordinateSystem") {
+      named_transforms_[text_.text()] = state_.transform;
+    } else if (name == "CoordSysTransform") {
+      choose_transform(text_.text());
+    } else if (name == "ActiveTransform") {
+      moves_ = text_.word() == "EndTime";
+      left_out_.features["motions"] += moves_ ? 1U : 0U;
+    } else if (!object_statement(name) && !material_statement(name)) {
+      other_statement(name);
+    }
+  }
+
+  void choose_transform(const std::string& name) {
+    const auto found = named_transforms_.find(name);
+    if (found == named_transforms_.end()) {
+      text_.fail("there is no coordinate system " + in_quotes(name) + " before it");
+    }
+    state_.transform = found->second;
+  }
+
+  bool object_statement(const std::string& name) {
+    if (name == "ObjectBegin") {
+      if (object_ != nullptr) {
+        text_.fail("an object lies in another one");
+      }
+      states_.push_back(state_);
+      object_ = &objects_[text_.text()];
+      *object_ = {};
+    } else if (name == "ObjectEnd") {
+      if (object_ == nullptr || states_.empty()) {
+        text_.fail("ObjectEnd without its begin");
+      }
+      object_->bytes = host_bytes(object_->scene);
+      object_ = nullptr;
+      state_ = states_.back();
+      states_.pop_back();
+    } else if (name == "ObjectInstance") {
+      add_instance(text_.text());
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  bool material_statement(const std::string& name) {
+    if (name == "Material") {
+      std::string type = text_.text();
+      state_.material = materials_.add(std::move(type), text_.parameters());
+    } else if (name == "MakeNamedMaterial") {
+      const std::string material = text_.text();
+      materials_.add_named(material, text_.parameters());
+    } else if (name == "NamedMaterial") {
+      state_.material = materials_.named(text_.text());
+    } else if (name == "Texture") {
+      std::string texture = text_.text();
+      static_cast<void>(text_.text());  // of floats or spectra
+      std::string kind = text_.text();
+      materials_.add_texture(std::move(texture), std::move(kind), text_.parameters());
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  void other_statement(const std::string& name) {
+    if (name == "Shape") {
+      const std::string kind = text_.text();
+      add_shape(kind, text_.parameters());
+    } else if (name == "LightSource") {
+      const std::string kind = text_.text();
+      add_light_source(kind, text_.parameters());
+    } else if (name == "AreaLightSource") {
+      static_cast<void>(text_.text());  // all are diffuse
+      const Parameters parameters = text_.parameters();
+      state_.emission = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) *
+                        parameters.number("scale", 1.0, 0.0, largest_emission);
+      state_.emission = glm::min(state_.emission, glm::dvec3(largest_emission));
+    } else if (name == "Camera") {
+      const std::string kind = text_.text();
+      set_camera(kind, text_.parameters());
+    } else if (name == "Film") {
+      static_cast<void>(text_.text());
+      const Parameters parameters = text_.parameters();
+      film_width_ = parameters.number("xresolution", 1280.0, 1.0, 1e9);
+      film_height_ = parameters.number("yresolution", 720.0, 1.0, 1e9);
+    } else if (name == "MediumInterface") {
+      while (text_.text_if_given()) {
+      }
+    } else if (name == "MakeNamedMedium" || name == "Attribute") {
+      static_cast<void>(text_.text());
+      static_cast<void>(text_.parameters());
+      left_out_.features[name == "Attribute" ? "statements Attribute" : "media"] += 1;
+    } else if (name == "ColorSpace") {
+      static_cast<void>(text_.text());
+    } else if (name == "TransformTimes") {
+      static_cast<void>(text_.numbers(2));
+    } else if (std::find(rendering.begin(), rendering.end(), name) != rendering.end()) {
+      if (name != "Option") {
+        static_cast<void>(text_.text());
+      }
+      static_cast<void>(text_.parameters());
+    } else if (name != "WorldEnd") {
+      text_.fail(in_quotes(name) + " is no statement of a pbrt file");
+    }
+  }
+
+  void add_shape(const std::string& kind, const Parameters& parameters) {
+    const std::optional<std::uint32_t> material = materials_.in_scene(state_.material, state_.emission);
+    if (!material) {
+      left_out_.features["surfaces of media"] += 1;
+      return;
+    }
+    left_out_.features["cut-outs (alpha)"] += parameters.find("alpha") != nullptr ? 1U : 0U;
+    std::optional<Scene> shape = scene_of_shape(kind, parameters, file_, text_, left_out_);
+    if (!shape) {
+      return;
+    }
+    left_out_.features["textures on shapes without texture coordinates"] +=
+        scene_.materials[*material].texture != no_texture && shape->uvs.empty() ? 1U : 0U;
+    if (state_.emission != glm::dvec3(0.0)) {
+      tessellate(*shape);  // paths find triangles that emit light
+    }
+    if (state_.reversed) {
+      for (Triangle& triangle : shape->triangles) {
+        std::swap(triangle.vertex[1], triangle.vertex[2]);
+      }
+    }
+    add(*shape, state_.transform, *material);
+  }
+
+  void add_instance(const std::string& name) {
+    if (object_ != nullptr) {
+      text_.fail("an instance lies in an object");
+    }
+    const auto object = objects_.find(name);
+    if (object == objects_.end()) {
+      text_.fail("there is no object " + in_quotes(name) + " before it");
+    }
+    check_size(object->second.scene);
+    file_.require_memory(object->second.bytes, "an instance takes");
+    Scene copy = object->second.scene;
+    add(copy, state_.transform, 0);
+  }
+
+  void check_size(const Scene& part) const {
+    const Scene& whole = object_ != nullptr ? object_->scene : scene_;
+    const std::uint64_t most = file_.options().max_triangles;
+    if (whole.triangles.size() + part.triangles.size() > most ||
+        whole.positions.size() + part.positions.size() > most ||
+        whole.quadrics.size() + part.quadrics.size() > most) {
+      text_.fail("the scene has more than " + std::to_string(most) +
+                 " triangles or vertices, which is more than is accepted");
+    }
+  }
+
+  void add(Scene& part, const glm::dmat4& transform, std::uint32_t material) {
+    to_triangles_if_stretched(part, transform);
+    check_size(part);
+    file_.take_memory(host_bytes(part), "its geometry takes");
+    part.framed = true;
+    place(placement_of(transform, text_), text_.place(), part);
+    append_geometry(object_ != nullptr ? object_->scene : scene_, part, material);
+  }
+
+  void add_light_source(const std::string& kind, const Parameters& parameters) {
+    const double scale = parameters.number("scale", 1.0, 0.0, largest_light);
+    if (kind == "infinite") {
+      left_out_.features["images of infinite lights, which are white skies"] +=
+          parameters.find("filename") != nullptr || parameters.find("mapname") != nullptr ? 1U : 0U;
+      const glm::dvec3 sky = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) * scale;
+      scene_.background = glm::min(scene_.background + sky, glm::dvec3(largest_emission));
+      scene_.ambient = scene_.background;
+      return;
+    }
+    Light light;
+    const bool distant = kind == "distant";
+    light.color = color_in(parameters, distant ? "L" : "I", glm::dvec3(1.0), largest_light, left_out_) *
+                  (scale * std::numbers::inv_pi);
+    const glm::dvec3 from = parameters.vector("from", glm::dvec3(0.0));
+    const glm::dvec3 to = parameters.vector("to", glm::dvec3(0.0, 0.0, 1.0));
+    light.position = from;
+    light.direction = unit_or_zero(to - from);
+    light.inverse_square = !distant;
+    if (distant) {
+      light.kind = LightKind::directional;
+    } else if (kind == "spot") {
+      light.kind = LightKind::spot;
+      const double angle = parameters.number("coneangle", 30.0, 0.0, 90.0);
+      light.cos_outer_cone = std::cos(glm::radians(angle));
+      light.cos_inner_cone =
+          std::cos(glm::radians(std::max(0.0, angle - parameters.number("conedeltaangle", 5.0, 0.0, 90.0))));
+    } else if (kind == "goniometric" || kind == "projection") {
+      left_out_.replace("lights " + kind + ", by point lights", parameters.place() + ": lights of the kind " +
+                                                                    in_quotes(kind) + " are not supported");
+    } else if (kind != "point") {
+      parameters.fail("there is no kind of light " + in_quotes(kind));
+    }
+    if (light.kind != LightKind::point && light.direction == glm::dvec3(0.0)) {
+      parameters.fail("the light shines from a point to the same point");
+    }
+    left_out_.features["powers and illuminances of lights"] +=
+        parameters.find("power") != nullptr || parameters.find("illuminance") != nullptr ? 1U : 0U;
+    Scene alone;
+    alone.framed = true;
+    alone.lights.push_back(light);
+    place(placement_of(state_.transform, text_), text_.place(), alone);
+    if (scene_.lights.size() == most_lights) {
+      text_.fail("the scene has more than " + std::to_string(most_lights) + " lights");
+    }
+    scene_.lights.push_back(alone.lights.front());
+  }
+
+  void set_camera(const std::string& kind, const Parameters& parameters) {
+    const glm::dmat4 to_world = glm::affineInverse(state_.transform);
+    static_cast<void>(placement_of(state_.transform, text_));
+    named_transforms_["camera"] = to_world;
+    if (kind != "perspective") {
+      left_out_.replace("cameras " + kind.substr(0, 40) + ", by one that sees all of the scene",
+                        parameters.place() + ": the camera " + in_quotes(kind) + " is not supported");
+      return;
+    }
+    const Placement placement = placement_of(to_world, text_);
+    camera_ = View{placement, parameters.number("fov", 90.0, 1e-3, 179.9)};
+  }
+
+  /// The camera as this program has them: one of the right-handed world.
+  void use_camera() {
+    const glm::dmat3& axes = camera_->placement.linear;
+    Camera& camera = scene_.camera;
+    camera.eye = camera_->placement.offset;
+    camera.at = camera.eye + unit_or_zero(axes[2]);
+    camera.up = unit_or_zero(axes[1]);
+    const double half = std::tan(glm::radians(camera_->fov) / 2.0);
+    camera.vertical_fov =
+        2.0 * std::atan(film_height_ > film_width_ ? half * film_height_ / film_width_ : half);
+    // Its x axis is to the right when forward, up and it are right-handed; else the world looks mirrored.
+    if (glm::determinant(axes) > 0.0) {
+      Placement mirrored;
+      mirrored.linear[0][0] = -1.0;
+      place(mirrored, file_.path().string(), scene_);
+      scene_.notes.emplace_back("The scene is mirrored in x, as its camera, which is left-handed, sees it.");
+    }
+    std::array<char, 80> text{};
+    static_cast<void>(std::snprintf(text.data(), text.size(),
+                                    "Its image is made for a film of %.0f x %.0f pixels.", film_width_,
+                                    film_height_));
+    scene_.notes.emplace_back(text.data());
+  }
+
+  AnimatedScene finish() {
+    if (scene_.triangles.empty() && scene_.quadrics.empty()) {
+      file_.fail_empty();
+    }
+    scene_.name = file_.path().filename().string();
+    scene_.framed = !camera_;
+    if (camera_) {
+      use_camera();
+    }
+    set_view(scene_, file_.options());
+    note_left_out(left_out_, scene_);
+    note_degenerate(scene_);
+    FileUse use;
+    use.parts = {{"materials", materials_.known(), materials_.used()}};
+    return AnimatedScene(std::move(scene_), std::move(use));
+  }
+
+  struct View {
+    Placement placement;  // of the camera in the world
+    double fov = 90.0;    // degrees, along the shorter side of the film
+  };
+
+  static constexpr std::size_t most_lights = 65536;
+
+  const SourceFile& file_;
+  Scene scene_;
+  LeftOut left_out_;
+  Text text_;
+  PbrtMaterials materials_;
+  State state_;
+  std::vector<State> states_;
+  bool moves_ = false;  // transforms are those at the end of a motion, which is left out
+  glm::dmat4 moved_{1.0};
+  std::map<std::string, glm::dmat4> named_transforms_;
+  std::map<std::string, Object> objects_;
+  Object* object_ = nullptr;  // that is being read
+  std::optional<View> camera_;
+  double film_width_ = 1280.0;
+  double film_height_ = 720.0;
+};
+
+}  // namespace
+}  // namespace pbrt
+
+AnimatedScene open_pbrt(const std::filesystem::path& path, const FileOptions& options,
+                        const ImageDecoder& decode) {
+  const SourceFile file(path, options);
+  try {
+    return pbrt::Reader(file, decode).read();
+  } catch (const std::bad_alloc&) {
+    file.fail("there is not enough memory for its scene");
+  }
+}
+
+}  // namespace marti::scenes
