@@ -16,8 +16,8 @@ namespace marti::scenes::pbrt {
 
 namespace {
 
-// Textures that refer to others, and materials that are mixed of others.
-constexpr int most_nested = 16;
+// Textures that refer to two others, and materials that are mixed of others.
+constexpr int most_nested = 8;
 
 constexpr std::array<std::string_view, 4> matt = {"diffuse", "matte", "diffusetransmission", "translucent"};
 constexpr std::array<std::string_view, 4> coated = {"coateddiffuse", "plastic", "substrate", "uber"};

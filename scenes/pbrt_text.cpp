@@ -17,8 +17,10 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-// Files that include others do so to put geometry and materials aside.
-constexpr std::size_t most_includes = 64;
+// Files that include others do so to put geometry and materials aside. Of each that includes another one
+// twice the time to read doubles, so that their number is limited, too.
+constexpr std::size_t most_nested_files = 64;
+constexpr std::size_t most_includes = 16384;
 
 }  // namespace
 
@@ -295,8 +297,9 @@ void Text::include(const std::string& name) {
       })) {
     fail("the file " + in_quotes(name) + " includes itself, by itself or by another one");
   }
-  if (open_.size() == most_includes) {
-    fail("more than " + std::to_string(most_includes) + " files include each other");
+  if (open_.size() == most_nested_files || ++includes_ > most_includes) {
+    fail("more than " + std::to_string(most_nested_files) + " files include each other, or more than " +
+         std::to_string(most_includes) + " are included");
   }
   std::string reason;
   std::optional<std::string> bytes = read(name, reason);

@@ -110,7 +110,8 @@ class Text {
   const SourceFile& file_;
   FileAccess access_;
   std::vector<Open> open_;  // the one that is read last, after those that include it
-  std::size_t end_ = 0;     // of the token that peek() has found
+  std::size_t includes_ = 0;
+  std::size_t end_ = 0;  // of the token that peek() has found
   std::string place_;
 };
 
