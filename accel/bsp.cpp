@@ -191,6 +191,7 @@ class BspBuilder {
                          !(axis == 0 && separates_nothing(level, index));
       topology_.work[node].listed = static_cast<std::uint32_t>(count);
       if (split) {
+        options_.memory.end_if_stopped();
         topology_.work[node].overlaps = 2 * topology_.work[node].listed;
         sort_into_children(level, index);
         topology_.nodes[node] = {static_cast<std::uint32_t>(topology_.nodes.size()), 2, level.number, false};

@@ -154,10 +154,12 @@ class BinaryBuilder {
     std::vector<Split> splits(end - begin);
     for (std::size_t n = begin; n < end; ++n) {
       if (tree_.nodes[n].count > large_node) {
+        options_.memory.end_if_stopped();
         splits[n - begin] = split(tree_.nodes[n], level, options_.threads, bins_);
       }
     }
     parallel_pieces(end - begin, nodes_in_a_piece, options_.threads, [&](std::size_t from, std::size_t to) {
+      options_.memory.end_if_stopped();
       const auto bins = std::make_unique<Bins>();
       for (std::size_t n = from; n < to; ++n) {
         if (tree_.nodes[begin + n].count <= large_node) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "accel/build_memory.h"
 #include "accel/primitive_overlap.h"
 
 namespace marti::accel {
@@ -172,6 +173,11 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
   grid.requested_ = asked_for(grid.frame_, options, set.size(), 0x1p53);
   grid.resolution_ = choose_resolution(grid.frame_, options, set.size());
 
+  const auto ask = [&](std::uint32_t id) {
+    if (id % nodes_between_checks == 0) {
+      options.memory.end_if_stopped();
+    }
+  };
   std::vector<std::uint32_t> counts;
   for (;; halve(grid.resolution_)) {
     grid.planes_ = planes_of(grid.frame_, grid.resolution_);
@@ -185,6 +191,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
     std::uint64_t entries = 0;
     const bool coarsest = counts.size() == 1;
     for (std::uint32_t id = 0; id < set.size() && (coarsest || entries <= options.max_entries); ++id) {
+      ask(id);
       for_cells(set, id, grid.planes_, grid.frame_.delta, [&](std::size_t cell) {
         ++counts[cell];
         ++entries;
@@ -210,6 +217,7 @@ Grid Grid::build(std::shared_ptr<const TriangleSet> triangles, const GridOptions
   }
   grid.topology_.entries.resize(first);
   for (std::uint32_t id = 0; id < set.size(); ++id) {
+    ask(id);
     for_cells(set, id, grid.planes_, grid.frame_.delta,
               [&](std::size_t cell) { grid.topology_.entries[counts[cell]++] = id; });
   }

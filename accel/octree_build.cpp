@@ -133,6 +133,7 @@ class OctreeBuilder {
   void sort_pieces() {
     parallel_pieces(pieces_.size(), pieces_at_once, options_.threads,
                     [this](std::size_t begin, std::size_t end) {
+                      options_.memory.end_if_stopped();
                       for (std::size_t p = begin; p < end; ++p) {
                         Piece& piece = pieces_[p];
                         const ChildSorter<double> sorter(frame_, {level_.number, level_.cells[piece.node]});

@@ -57,7 +57,8 @@ decltype(auto) translated(const Work& work) {
   try {
     return work();
   } catch (const sim::UserError& error) {
-    throw Error(sim::shown(error.what(), sim::all_shown));
+    const sim::Place& place = error.place();
+    throw Error(sim::shown(error.what(), sim::all_shown), place.file, place.line, place.key);
   } catch (const sim::Stopped&) {
     throw Interrupted();
   } catch (const std::system_error& error) {  // of threads and of file systems
@@ -204,34 +205,14 @@ Table figures_of(const tables::RunJson& run) {
 
 }  // namespace
 
-// Files are named "file:line", and by TOML's reader "file:line:column". The place of what was given as a
-// setting is "--set key=value".
-Error::Error(const std::string& message) : std::runtime_error(message) {
-  static const sim::Schema schema = sweep::sweep_schema();
-  for (std::size_t begin = 0, end = 0; (end = message.find(": ", begin)) != std::string::npos;
-       begin = end + 2) {
-    std::string part = message.substr(begin, end - begin);
-    if (begin == 0 && part.starts_with("--")) {
-      part = part.substr(part.find(' ') + 1);
-      part.resize(std::min(part.size(), part.find('=')));
-    }
-    if (std::ranges::find(schema.keys(), part, &sim::Key::name) != schema.keys().end()) {
-      key_ = part;
-      return;
-    }
-    const std::size_t number = part.find(':');
-    if (begin == 0 && number != std::string::npos) {
-      file_ = part.substr(0, number);
-      line_ = std::atoi(part.c_str() + number + 1);
-    }
-  }
-}
+Error::Error(const std::string& message, std::string file, int line, std::string key)
+    : std::runtime_error(message), file_(std::move(file)), line_(line), key_(std::move(key)) {}
 
 Interrupted::Interrupted() : std::runtime_error("interrupted") {}
 
 struct Result::Data {
   std::optional<run::RunResult> live;  // of a result that is in no directory
-  fs::path directory;                  // of one that is
+  std::string directory;               // of one that is
   std::string json;
   std::string summary;
   Table figures;
@@ -261,6 +242,7 @@ const Table& Result::figures() const { return data_->figures; }
 const std::map<std::string, std::string>& Result::settings() const { return data_->settings; }
 const std::string& Result::json() const { return data_->json; }
 const std::string& Result::summary() const { return data_->summary; }
+const std::string& Result::directory() const { return data_->directory; }
 
 Image Result::image() const {
   const auto rgb_of = [](const processors::program::Image& image) {
@@ -272,7 +254,7 @@ Image Result::image() const {
   };
   return translated([&] {
     if (!data_->live) {
-      return rgb_of(host::read_exr(data_->directory / "image.exr"));
+      return rgb_of(host::read_exr(fs::path(data_->directory) / "image.exr"));
     }
     if (data_->live->frame_config.log != nullptr) {
       throw sim::UserError("a frame from a log (scene.log) has no image");
@@ -291,7 +273,8 @@ std::string Result::ray_hits() const {
     }
     return data_->live
                ? show::hits_file(data_->live->functional.frame, data_->live->functional.totals.all_rays())
-               : sim::read_file(data_->directory / "hits.npy", std::numeric_limits<std::int64_t>::max());
+               : sim::read_file(fs::path(data_->directory) / "hits.npy",
+                                std::numeric_limits<std::int64_t>::max());
   });
 }
 
@@ -309,7 +292,7 @@ std::string Result::report() const {
 void Result::save(const std::string& directory) const {
   translated([&] {
     if (!data_->live) {
-      throw sim::UserError(directory + ": the result is in " + data_->directory.string() + " already");
+      throw sim::UserError(directory + ": the result is in " + data_->directory + " already");
     }
     if (directory.empty()) {
       throw sim::UserError("the name of a directory must not be empty");
@@ -388,6 +371,7 @@ Result run(const std::string& config, const Settings& settings, const std::strin
       options.meter = &meter;
       auto data = std::make_shared<Result::Data>();
       data->live.emplace(run::run(read_config, std::move(options)));
+      data->live->frame_config.wait_with(nullptr);
       data->summary = show::summary_of(*data->live);
       if (directory.empty()) {
         data->json = show::json_of(*data->live);
@@ -418,10 +402,7 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
         options.share = sweep::share_named(choices.share);
       }
       sim::Config read_config = read(sweep::sweep_schema(), config, choices.settings);
-      sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes);
-      for (sweep::SweepFrame& frame : plan.frames) {
-        frame.config.meter = &meter;
-      }
+      const sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes, &meter);
       sweep::check_question(plan.question, plan.axes);
       const sweep::SweepReport report =
           sweep::run_sweep(plan, options, keys::read_memory(read_config, sweep::processes_beside()),

@@ -30,12 +30,12 @@ namespace marti {
 /// "file:line: key: ", and it says what would be right.
 class MARTI_PUBLIC Error : public std::runtime_error {
  public:
-  explicit Error(const std::string& message);
-  /// Of the configuration; empty where the message names none.
+  explicit Error(const std::string& message, std::string file = {}, int line = 0, std::string key = {});
+  /// Of the configuration, "defaults" without one; empty where a setting or something else is at fault.
   [[nodiscard]] const std::string& file() const { return file_; }
-  /// From 1; 0 where the message names none.
+  /// From 1; 0 where the key has its default, or no file is at fault.
   [[nodiscard]] int line() const { return line_; }
-  /// "cache.size"; empty where the message names none.
+  /// "cache.size", as it was given: also one that does not exist.
   [[nodiscard]] const std::string& key() const { return key_; }
 
  private:
@@ -51,7 +51,6 @@ class MARTI_PUBLIC Interrupted : public std::runtime_error {
 };
 
 /// Asked several times a second by the thread that has called, while another one works, until it says no.
-/// Reading a scene and building its tree are not ended before they are done.
 using KeepGoing = std::function<bool()>;
 
 /// A cell of a table, or a figure; std::monostate where a machine lacks the figure.
@@ -102,6 +101,8 @@ class MARTI_PUBLIC Result {
   /// Writes what `marti run -o` writes. Throws Error for a directory that holds another kind of result, and
   /// for a result that is in a directory already.
   void save(const std::string& directory) const;
+  /// Where it is; empty for one that is in no directory.
+  [[nodiscard]] const std::string& directory() const;
 
   struct Data;  ///< of the library
   explicit Result(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

@@ -130,15 +130,20 @@ std::string Config::where(const Entry& entry) const {
   return entry.line() > 0 ? name_ + ":" + std::to_string(entry.line()) : entry.given->place;
 }
 
-void Config::fail(std::string_view key, std::string_view message) const {
+Place Config::place(std::string_view key) const {
   const Entry& entry = entries_[index_of(key)];
-  const bool assigned = entry.given != nullptr && entry.line() == 0;
-  if (assigned && entry.given->place.starts_with("--set ")) {  // the place names the key itself
-    throw UserError(shown(entry.given->place) + ": " + shown(message, all_shown));
+  if (assigned(key) && entry.given->place.starts_with("--set ")) {  // names the key itself
+    return {shown(entry.given->place), {}, 0, std::string(key)};
   }
-  // For a default the message names the file in which it could be changed.
-  throw UserError(place_in_file(name_, entry.line(), key) + ": " + shown(message, all_shown) +
-                  (assigned ? " (in " + shown(entry.given->place) + ")" : ""));
+  // Of a default it is the file in which it could be changed.
+  return place_in_file(name_, entry.line(), key);
+}
+
+void Config::fail(std::string_view key, std::string_view message) const {
+  Place at = place(key);
+  const bool elsewhere = assigned(key) && !at.file.empty();
+  throw UserError(std::move(at),
+                  shown(message, all_shown) + (elsewhere ? " (in " + shown(where(key)) + ")" : ""));
 }
 
 void Config::mark_unused_reason(std::string_view key_or_section, std::string_view reason,

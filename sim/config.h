@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sim/document.h"
+#include "sim/error.h"
 #include "sim/schema.h"
 #include "sim/time.h"
 
@@ -82,8 +83,9 @@ class Config {
   [[nodiscard]] bool assigned(std::string_view key) const;
   /// "file:line", "--set key=value" or "default".
   [[nodiscard]] std::string where(std::string_view key) const;
-  /// Throws the UserError "file:line: key: message" or "--set key=value: message"; for a key that is not
-  /// given, "file: key: message".
+  /// "file:line: key" or "--set key=value"; of a key that is not given, "file: key".
+  [[nodiscard]] Place place(std::string_view key) const;
+  /// Throws the UserError "place: message".
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
 
   /// Sets the reason why the key, or all keys of the section, are not used in this machine ("has no effect

@@ -49,12 +49,13 @@ std::optional<double> cycles_of(const EffectiveValue& value) {
 
 }  // namespace
 
-std::string place_in_file(std::string_view file, int line, std::string_view key) {
-  return shown(file) + (line > 0 ? ":" + std::to_string(line) : "") + ": " + shown(key);
+Place place_in_file(std::string_view file, int line, std::string_view key) {
+  return {shown(file) + (line > 0 ? ":" + std::to_string(line) : "") + ": " + shown(key), std::string(file),
+          line, std::string(key)};
 }
 
 void fail_at(const Config& config, int line, std::string_view key, std::string_view message) {
-  throw UserError(place_in_file(config.name(), line, key) + ": " + shown(message, all_shown));
+  throw UserError(place_in_file(config.name(), line, key), shown(message, all_shown));
 }
 
 std::string longest_duration(std::span<const EffectiveValue> values) {
@@ -80,7 +81,7 @@ std::string longest_duration(std::span<const EffectiveValue> values) {
 void fail_overflow(std::span<const EffectiveValue> values, std::string_view file, const TimeOverflow& error) {
   const std::string key = longest_duration(values);
   if (key.empty()) {
-    throw UserError(shown(file) + ": " + error.what());
+    throw UserError(Place{shown(file), std::string(file)}, error.what());
   }
   fail_placed(values, file, KeyError(key, error.what()));
 }
@@ -89,14 +90,14 @@ void fail_placed(std::span<const EffectiveValue> values, std::string_view file, 
   const EffectiveValue* const value = find(values, error.key());
   const std::string source = value == nullptr || !value->given ? "" : value->source;
   if (source.starts_with("--set ")) {
-    throw UserError(shown(source) + ": " + shown(error.reason(), all_shown));
+    throw UserError(Place{shown(source), {}, 0, error.key()}, shown(error.reason(), all_shown));
   }
   const std::size_t colon = source.rfind(':');
   int line = 0;
   if (colon != std::string::npos) {
     (void)std::from_chars(source.data() + colon + 1, source.data() + source.size(), line);
   }
-  throw UserError(place_in_file(file, line, error.key()) + ": " + shown(error.reason(), all_shown));
+  throw UserError(place_in_file(file, line, error.key()), shown(error.reason(), all_shown));
 }
 
 }  // namespace marti::sim

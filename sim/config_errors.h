@@ -10,9 +10,8 @@
 
 namespace marti::sim {
 
-/// "file:line: key", the beginning of messages about a key in a file, both parts shown as in sim/shown.h.
-/// Line 0: "file: key".
-[[nodiscard]] std::string place_in_file(std::string_view file, int line, std::string_view key);
+/// A key in a file: "file:line: key", both parts shown as in sim/shown.h. Line 0: "file: key".
+[[nodiscard]] Place place_in_file(std::string_view file, int line, std::string_view key);
 
 /// Throws the UserError "file:line: key: message" for that line of the configuration's file.
 [[noreturn]] void fail_at(const Config& config, int line, std::string_view key, std::string_view message);

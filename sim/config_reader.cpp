@@ -35,15 +35,14 @@ constexpr std::size_t most_key_parts = 32;
 constexpr std::string_view name_too_deep = "a name has more than 32 parts joined by dots";
 
 struct Origin {
-  std::string place;  // the beginning of a message: "file:line: key" or "--set key=value"
-  int line = 0;
-  std::string assignment;
+  Place place;
+  std::string assignment;  // empty: of the file
 };
 
 constexpr std::size_t whole_line = std::numeric_limits<std::size_t>::max();  // a column behind all of it
 
 [[noreturn]] void fail_at(const Origin& origin, const std::string& message) {
-  throw UserError(origin.place + ": " + message);
+  throw UserError(origin.place, message);
 }
 
 bool is_key_character(char c) {
@@ -138,7 +137,7 @@ DocumentValue document_of(const toml::node& node, int line) {
 /// Refuses values that a free section must not contain.
 void check_free(const DocumentValue& value, const std::string& name, std::string_view file) {
   const auto fail = [&] {
-    throw UserError(place_in_file(file, value.line, name) + ": must not be " + describe(value));
+    throw UserError(place_in_file(file, value.line, name), "must not be " + describe(value));
   };
   if (std::holds_alternative<std::monostate>(value.content)) {
     fail();
@@ -230,12 +229,11 @@ class ConfigReader {
 
   void read_text(std::string_view text) {
     if (const std::size_t line = line_too_deep(text); line != 0) {
-      throw UserError(place_of(line_of(text, line, whole_line), std::to_string(line)) + ": " +
-                      std::string(name_too_deep));
+      throw UserError(place_of(line_of(text, line, whole_line), line), std::string(name_too_deep));
     }
     if (const std::size_t line = line_beyond_ascii(text); line != 0) {
-      throw UserError(place_of(line_of(text, line, whole_line), std::to_string(line)) +
-                      ": a character that is not ASCII, outside of a text in quotes and of a comment");
+      throw UserError(place_of(line_of(text, line, whole_line), line),
+                      "a character that is not ASCII, outside of a text in quotes and of a comment");
     }
     try {
       const toml::table document = toml::parse(text, config_.name_);
@@ -244,20 +242,23 @@ class ConfigReader {
       std::stable_sort(found.begin(), found.end(),
                        [](const Found& a, const Found& b) { return a.line < b.line; });
       for (const Found& one : found) {
-        const Origin origin{place_in_file(config_.name_, one.line, one.key), one.line, {}};
+        const Origin origin{place_in_file(config_.name_, one.line, one.key), {}};
         store(one.key, document_of(*one.node, one.line), origin);
       }
     } catch (const toml::parse_error& error) {
       const toml::source_position at = error.source().begin;
       const FaultyLine line = line_of(text, at.line, at.column);
-      throw UserError(place_of(line, std::to_string(at.line) + ":" + std::to_string(at.column)) + ": " +
+      throw UserError(place_of(line, at.line, ":" + std::to_string(at.column)),
                       shown(error.description()) + missing_quotes(line));
     }
   }
 
-  /// "file:place: name"; without the name where none has begun.
-  [[nodiscard]] std::string place_of(const FaultyLine& line, const std::string& place) const {
-    return shown(config_.name_) + ":" + place + (line.name.empty() ? "" : ": " + shown(line.name));
+  /// "file:number: name", with a column behind the number; without the name where none has begun.
+  [[nodiscard]] Place place_of(const FaultyLine& line, std::size_t number,
+                               const std::string& column = {}) const {
+    return {shown(config_.name_) + ":" + std::to_string(number) + column +
+                (line.name.empty() ? "" : ": " + shown(line.name)),
+            config_.name_, static_cast<int>(number), line.name};
   }
 
   /// Lists the values below `table` under their dotted names. An empty table is listed itself.
@@ -303,13 +304,14 @@ class ConfigReader {
   }
 
   void assign(const std::string& assignment) {
-    Origin origin{"--set " + shown(assignment), 0, assignment};
+    Origin origin{{"--set " + shown(assignment)}, assignment};
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
       fail_at(origin, "must have the form key=value");
     }
     const std::string key(trim(std::string_view(assignment).substr(0, equals)));
     const std::string text(trim(std::string_view(assignment).substr(equals + 1)));
+    origin.place.key = key;
     const Key& declared = find(key, nullptr, origin);
     if (text.empty()) {
       fail_at(origin, "the value is missing; it must be " + expected_of(declared));
@@ -356,7 +358,7 @@ class ConfigReader {
               "this command does not read it; the configuration is one for `" + std::string(command) + "`");
     }
     if (const std::string section = key.substr(0, key.find('.'));
-        schema.is_free_section(section) && origin.line == 0) {
+        schema.is_free_section(section) && origin.place.line == 0) {
       const std::string keys = keys_below(section);
       fail_at(origin, "[" + section + "] can only be given in the file" +
                           (keys.empty() ? "" : ", but for its keys " + keys));
@@ -395,7 +397,7 @@ class ConfigReader {
     const Key& declared = find(key, &value, origin);
     Config::Given given;
     given.values = read_values(declared, value, origin.place);
-    given.line = origin.line;
+    given.line = origin.place.line;
     given.place = origin.assignment.empty() ? "" : "--set " + origin.assignment;
     config_.entries_[*config_.schema_->find(key)].given =
         std::make_shared<const Config::Given>(std::move(given));

@@ -17,7 +17,8 @@ namespace marti::sim {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what, int error) {
-  throw UserError(file.string() + ": " + std::string(what) + ": " + std::generic_category().message(error));
+  throw UserError(Place{file.string(), file.string()},
+                  std::string(what) + ": " + std::generic_category().message(error));
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace marti::sim {
 /// A fault in the value of one key. what() is "key: reason".
 class KeyError : public UserError {
  public:
-  KeyError(std::string key, std::string reason)
-      : UserError(key + ": " + reason), key_(std::move(key)), reason_(std::move(reason)) {}
+  KeyError(const std::string& key, std::string reason)
+      : UserError(Place{key, {}, 0, key}, reason), reason_(std::move(reason)) {}
 
-  [[nodiscard]] const std::string& key() const { return key_; }
+  [[nodiscard]] const std::string& key() const { return place().key; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
   /// Calls `work`. A UserError that names no key becomes one about `key`, with `prefix` before its text.
@@ -32,7 +32,6 @@ class KeyError : public UserError {
   }
 
  private:
-  std::string key_;
   std::string reason_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/error.h"
 #include "sim/nearest.h"
 #include "sim/shown.h"
 #include "sim/units.h"
@@ -12,9 +11,7 @@ namespace marti::sim {
 
 namespace {
 
-[[noreturn]] void fail_at(std::string_view place, const std::string& message) {
-  throw UserError(std::string(place) + ": " + message);
-}
+[[noreturn]] void fail_at(const Place& place, const std::string& message) { throw UserError(place, message); }
 
 template <class T>
 bool is(const DocumentValue& node) {
@@ -71,7 +68,7 @@ Value real(const DocumentValue& node, const Wrong& wrong) {
 }
 
 /// The node converted to the key's type; the range is not checked yet.
-Value typed(const Key& key, const DocumentValue& node, std::string_view place) {
+Value typed(const Key& key, const DocumentValue& node, const Place& place) {
   const auto wrong = [&]() { fail_at(place, "must be " + expectation(key) + ", not " + describe(node)); };
   const auto parsed = [&](auto parse) -> Value {
     try {
@@ -130,7 +127,7 @@ Value typed(const Key& key, const DocumentValue& node, std::string_view place) {
   throw InternalError("a value of the wrong type was accepted");
 }
 
-Value convert(const Key& key, const DocumentValue& node, std::string_view place) {
+Value convert(const Key& key, const DocumentValue& node, const Place& place) {
   Value value = typed(key, node, place);
   if (!in_range(key, value)) {
     std::string message = "must be " + print_range(key);
@@ -170,7 +167,7 @@ std::string expected_of(const Key& key) {
   return key.is_list ? "a list in brackets, each " + expectation(key) : expectation(key);
 }
 
-std::vector<Value> read_values(const Key& key, const DocumentValue& value, std::string_view place) {
+std::vector<Value> read_values(const Key& key, const DocumentValue& value, const Place& place) {
   std::vector<Value> values;
   if (!key.is_list) {
     values.push_back(convert(key, value, place));

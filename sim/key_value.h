@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/document.h"
+#include "sim/error.h"
 #include "sim/schema.h"
 
 namespace marti::sim {
@@ -17,9 +18,8 @@ namespace marti::sim {
 /// own unit.
 [[nodiscard]] std::string unit_of(const Key& key);
 
-/// The values of `key`: one, or those of a list. Throws the UserError "place: message" for another type and
+/// The values of `key`: one, or those of a list. Throws UserError at `place` for another type and
 /// for a value out of range.
-[[nodiscard]] std::vector<Value> read_values(const Key& key, const DocumentValue& value,
-                                             std::string_view place);
+[[nodiscard]] std::vector<Value> read_values(const Key& key, const DocumentValue& value, const Place& place);
 
 }  // namespace marti::sim

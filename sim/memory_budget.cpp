@@ -10,6 +10,7 @@
 #include "sim/key_error.h"
 #include "sim/parse_number.h"
 #include "sim/units.h"
+#include "sim/work_meter.h"
 
 namespace marti::sim {
 
@@ -105,7 +106,10 @@ std::string MemoryBudget::excess(std::uint64_t bytes) const {
   return needed(bytes) + ", more than " + std::string(memory_limit_key) + " = " + limit_and_source();
 }
 
+void MemoryBudget::end_if_stopped() const { sim::end_if_stopped(meter_); }
+
 void MemoryBudget::require(std::uint64_t bytes, std::string_view what, std::string_view remedy) const {
+  end_if_stopped();
   if (bytes > left()) {
     throw KeyError(std::string(memory_limit_key), std::string(what) + needed(bytes) + ", more than " +
                                                       limit_and_source() + ": raise the limit" +

@@ -9,6 +9,8 @@
 
 namespace marti::sim {
 
+class WorkMeter;
+
 inline constexpr std::string_view memory_limit_key = "host_machine.memory_limit";
 
 /// A value: taking from a copy has no effect on other copies. Where the memory of two steps is in use at the
@@ -19,6 +21,13 @@ class MemoryBudget {
   MemoryBudget() = default;
   /// `limit` in bytes. `given`: the user has set it; else it follows from the host.
   explicit MemoryBudget(std::uint64_t limit, bool given = false) : limit_(limit), given_(given) {}
+
+  /// Whoever takes this memory step by step asks `meter` at each step whether somebody still waits for what
+  /// is made of it: require(), take() and end_if_stopped() throw Stopped when nobody does. Null: somebody
+  /// does.
+  void wait_with(const WorkMeter* meter) { meter_ = meter; }
+  /// For steps that take no memory.
+  void end_if_stopped() const;
 
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
   [[nodiscard]] std::uint64_t left() const { return limit_ - taken_; }
@@ -39,6 +48,7 @@ class MemoryBudget {
   std::uint64_t limit_ = ~std::uint64_t{0};
   std::uint64_t taken_ = 0;
   bool given_ = true;
+  const WorkMeter* meter_ = nullptr;
 };
 
 /// The memory that this process can have: the least of the host's memory, the limits of its control groups

@@ -100,6 +100,7 @@ PYBIND11_MODULE(_marti, module) {
              return py::bytes(file);
            })
       .def("report", &marti::Result::report, WithoutGil())
+      .def("directory", &marti::Result::directory)
       .def("save", &marti::Result::save, WithoutGil());
   py::class_<marti::Sweep>(module, "Sweep")
       .def("points", &marti::Sweep::points)

@@ -41,7 +41,7 @@ CLI::Option* takes_value(CLI::Option* option, const sim::Key& key) {
       key.choices.empty() ? sim::print_range(key) : fmt::format("{{{}}}", fmt::join(key.choices, ","));
   return option->check(CLI::Validator(
       [option, key](std::string& text) {
-        (void)sim::read_values(key, value_of(text), option->get_name() + "=" + sim::shown(text));
+        (void)sim::read_values(key, value_of(text), sim::Place{option->get_name() + "=" + sim::shown(text)});
         return std::string();
       },
       values));

@@ -87,7 +87,7 @@ std::optional<std::string> not_sampled(const processors::machine::MachineConfig&
 
 std::string run_within(sim::Config& config, double tolerance, bool json, run::RunOptions exact) {
   keys::FrameConfig frame = keys::read_frame(config);
-  frame.meter = exact.meter;
+  frame.wait_with(exact.meter);
   run::refuse_several_frames(config, frame.frames);
   const processors::machine::MachineConfig machine = keys::read_machine(config);
   const keys::RecordConfig record = keys::read_record(config, true);

@@ -95,19 +95,10 @@ std::string keys_json(const sim::Config& config) {
   return keys.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string refusal(const std::string& message, const std::optional<std::string>& key) {
-  const Json json = {{"error", message}, {"key", key ? Json(*key) : Json(nullptr)}};
+// `key`: the one at fault; empty: none.
+std::string refusal(const std::string& message, const std::string& key) {
+  const Json json = {{"error", message}, {"key", key.empty() ? Json(nullptr) : Json(key)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-// The key that a message about a configuration names: of "--set key=value: ..." or "file:line: key: ...".
-std::optional<std::string> key_of(const std::string& message, const sim::Schema& schema) {
-  for (const std::string& name : schema.names()) {
-    if (message.starts_with("--set " + name + "=") || message.find(": " + name + ": ") != std::string::npos) {
-      return name;
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -138,9 +129,9 @@ std::string Session::refused_or(const Make& make) const {
   try {
     return make();
   } catch (const sim::UserError& error) {
-    return refusal(error.what(), key_of(error.what(), schema_));
+    return refusal(error.what(), schema_.find(error.place().key) ? error.place().key : std::string());
   } catch (const std::bad_alloc&) {
-    return refusal("not enough memory for this machine", std::nullopt);
+    return refusal("not enough memory for this machine", {});
   }
 }
 

@@ -136,7 +136,7 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
 
 tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
   FramesConfig frames = read_frames(config);
-  frames.frame.meter = meter;
+  frames.frame.wait_with(meter);
   FramesStudy study(frames);
   study.run();
   const std::vector<FrameOutcome>& outcomes = study.outcomes();

@@ -66,17 +66,18 @@ void require_file(const fs::path& file) {
   if (fs::is_directory(file, error)) {
     const std::vector<std::string> names = names_in(file, false);
     throw sim::UserError(
-        file.string() + ": is a directory; name a configuration" +
-        (names.empty() ? " (a .toml file)" : " in it, such as " + (file / names.front()).string()));
+        sim::Place{file.string(), file.string()},
+        "is a directory; name a configuration" +
+            (names.empty() ? " (a .toml file)" : " in it, such as " + (file / names.front()).string()));
   }
   if (fs::exists(file, error) || (error && error != std::errc::not_a_directory)) {
     return;
   }
   const fs::path near = nearest_file(file);
   throw sim::UserError(
-      file.string() + ": there is no such file" +
-      (near.empty() ? "" : " (did you mean \"" + near.string() + "\"?)") +
-      (file.is_relative() ? "; the current directory is " + fs::current_path(error).string() : ""));
+      sim::Place{file.string(), file.string()},
+      "there is no such file" + (near.empty() ? "" : " (did you mean \"" + near.string() + "\"?)") +
+          (file.is_relative() ? "; the current directory is " + fs::current_path(error).string() : ""));
 }
 
 std::string read_standard_input() {

@@ -45,6 +45,13 @@ struct FrameConfig {
   sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
   /// What is traced and how is that of this log, which is read in the place of the scene; null: it is traced.
   std::shared_ptr<const LoggedFrame> log{};
+
+  /// `waiting` may also stop the frame, while its scene is read as well as later; null: nobody waits.
+  void wait_with(sim::WorkMeter* waiting) {
+    meter = waiting;
+    memory.wait_with(waiting);
+    open.file.memory.wait_with(waiting);
+  }
 };
 
 /// The options with the frame made so small that its longer side has at most `side` pixels; a window shows

@@ -105,7 +105,7 @@ std::string text_of_tables(std::span<const tables::Table> tables) {
 
 tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   PaperConfig paper = read_paper(config);
-  paper.frame.meter = meter;
+  paper.frame.wait_with(meter);
   const memory::LayoutConfig& layout = paper.machine.layout;
 
   // One after the other, so that the host's seconds mean something.

@@ -42,6 +42,8 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   sample.record = true;
   sample.hits = false;
   sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
+  sim::WorkMeter of_sample(config.meter);
+  sample.meter = &of_sample;
   const processors::program::Frame frame = processors::program::render(scene, triangles, structure, sample);
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;

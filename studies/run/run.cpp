@@ -289,7 +289,7 @@ RunResult run(sim::Config& config, RunOptions options) {
   result.config_name = config.name();
   result.frame_config = keys::read_frame(config);
   result.frame_config.keep = options.keep;
-  result.frame_config.meter = options.meter;
+  result.frame_config.wait_with(options.meter);
   result.frame_config.render.hits =
       result.frame_config.render.integrator == processors::program::Integrator::rays;
   refuse_several_frames(config, result.frame_config.frames);

@@ -17,7 +17,7 @@ namespace marti::studies::schemes {
 
 tables::StudyOutput run_schemes(sim::Config& config, sim::WorkMeter* meter) {
   SchemesConfig schemes = read_schemes(config);
-  schemes.frame.meter = meter;
+  schemes.frame.wait_with(meter);
   const run::FunctionalRun run = run::run_functional(schemes.frame);
   const processors::program::WorkLog& log = *run.frame.log;
   sim::plan_parts(meter, "stages", schemes.stage_machine.empty() ? 0 : 1);

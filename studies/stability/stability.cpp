@@ -128,7 +128,7 @@ tables::StudyOutput run_stability(sim::Config& config, std::span<const Stability
                                   sim::WorkMeter* meter) {
   Subject subject;
   subject.frame = keys::read_one_frame(config, keys::FrameUse::stability);
-  subject.frame.meter = meter;
+  subject.frame.wait_with(meter);
   subject.machine = keys::read_machine(config);
   // What is counted or worked out from counters changes no time.
   subject.machine.count = {};

@@ -62,7 +62,7 @@ std::string missing_text(const SuiteFile& suite) {
 sweep::SweepPlan plan_of(sim::Config& config, const SuiteFile& suite) {
   const std::vector<std::string> axes = {axis_of(suite)};
   if (axes.front().empty()) {
-    throw sim::UserError(suite.place + ": none of the suite's scenes is there");
+    throw sim::UserError(suite.place, "none of the suite's scenes is there");
   }
   sweep::SweepPlan plan = sweep::plan_sweep(config, axes);
   const auto point = std::ranges::find(plan.axes, "point");
@@ -72,15 +72,15 @@ sweep::SweepPlan plan_of(sim::Config& config, const SuiteFile& suite) {
         return std::get<std::string>(each.values[at]) == suite.baseline;
       });
   if (!has_baseline) {
-    throw sim::UserError(suite.place + ": there is no other machine, or none of this name: each is a table " +
-                         "[sweep.points.NAME]");
+    throw sim::UserError(
+        suite.place, "there is no other machine, or none of this name: each is a table [sweep.points.NAME]");
   }
   if (plan.directions.size() > 2) {
-    throw sim::UserError(suite.place +
-                         ": a suite crosses scenes and named points, and [sweep] has further axes");
+    throw sim::UserError(suite.place,
+                         "a suite crosses scenes and named points, and [sweep] has further axes");
   }
   if (!plan.question.asks.empty()) {
-    throw sim::UserError(suite.place + ": a suite has its own question; leave out [question]");
+    throw sim::UserError(suite.place, "a suite has its own question; leave out [question]");
   }
   plan.question = question_of(suite);
   return plan;

@@ -191,7 +191,7 @@ sweep::Question question_of(const SuiteFile& suite) {
     means +=
         fmt::format(", CASE WHEN COUNT({0}) = COUNT(*) THEN exp(avg(ln({0}))) END AS {1}", value, column);
   }
-  const std::string place = suite.place;
+  const sim::Place place = suite.place;
   sweep::Question question;
   question.asks = "How much faster than " + suite.baseline + " are the machines?";
   question.answer = {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/config.h"
+#include "sim/error.h"
 #include "studies/sweep/plan/question.h"
 
 namespace marti::studies::suite {
@@ -18,7 +19,7 @@ struct SuiteScene {
 
 struct SuiteFile {
   std::string baseline;
-  std::string place;  ///< of the baseline, for messages
+  sim::Place place;  ///< of the baseline, for messages
   std::vector<SuiteScene> scenes;
 };
 

@@ -158,7 +158,8 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   } catch (const sim::UserError& error) {
     clean_up();
     throw sim::UserError(error.what() + (" (" + std::to_string(results.saved())) + " of " +
-                         std::to_string(plan.machines.size()) + " machines are saved)");
+                             std::to_string(plan.machines.size()) + " machines are saved)",
+                         error);
   } catch (...) {
     clean_up();
     throw;

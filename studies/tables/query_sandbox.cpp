@@ -158,8 +158,8 @@ void shown(sqlite3_context* context, int /*count*/, sqlite3_value** arguments) {
   }
 }
 
-[[noreturn]] void fail(const std::string& place, const std::string& reason) {
-  throw sim::UserError(place + ": " + sim::shown(reason));
+[[noreturn]] void fail(const sim::Place& place, const std::string& reason) {
+  throw sim::UserError(place, sim::shown(reason));
 }
 
 // What is wrong with the statement that SQLite would accept: it leaves out without a word what follows the
@@ -208,7 +208,7 @@ void QuerySandbox::add_row(std::span<const Cell> cells) {
   insert_->reset();
 }
 
-QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const std::string& place,
+QuerySandbox::Rows QuerySandbox::run(const std::string& sql, const sim::Place& place,
                                      std::set<std::string>* reads) {
   sqlite3* const handle = database_.getHandle();
   Watched watched{table_, reads};

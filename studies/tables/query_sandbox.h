@@ -35,7 +35,7 @@ class QuerySandbox {
   /// SQLite or 256 MB, gives more than 10,000 rows or 10 MB, or makes a value of more than 100 kB. One step
   /// may take long, as to look for a long text in another. `reads`: is given the columns of the table that it
   /// reads, if not null. No other thread may use SQLite meanwhile.
-  [[nodiscard]] Rows run(const std::string& sql, const std::string& place,
+  [[nodiscard]] Rows run(const std::string& sql, const sim::Place& place,
                          std::set<std::string>* reads = nullptr);
 
  private:

@@ -3,11 +3,13 @@
 
 import concurrent.futures
 import csv
+import importlib.util
 import json
 import multiprocessing
 import os
 import pathlib
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -173,12 +175,48 @@ class Runs(unittest.TestCase):
             logged = marti.run(self.config, {"scene.log": log})
             with self.assertRaisesRegex(marti.Error, "does not know what its rays hit"):
                 logged.ray_hits
+        with tempfile.TemporaryDirectory() as directory:
+            kept = pathlib.Path(directory, "out")
+            with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+                sweeps = [marti.sweep(self.config, {"machine.nodes": [2, 4]}, scene, rays=rays),
+                          marti.sweep(self.config, {"machine.nodes": [2]}, scene, rays=rays, directory=kept),
+                          marti.sweep(self.config, {"machine.nodes": [2, 4]}, scene, rays=rays, directory=kept,
+                                      executor=pool, shares=2)]
+            for sweep in sweeps:
+                for nodes, end in zip(sweep.points["machine.nodes"], sweep.points["end"]):
+                    self.assertEqual(marti.run(self.config, scene, rays=rays, machine__nodes=nodes).end, end)
+            self.assertEqual(len(list(kept.glob("rays-*.npy"))), 1)
+            with self.assertRaisesRegex(marti.Error, "machine.nodes"):
+                marti.sweep(self.config, {"machine.nodes": [0]}, rays=rays, directory=pathlib.Path(directory, "wrong"))
+            self.assertEqual(os.listdir(directory), ["out"])
         rays[17, 4:7] = 0
         with self.assertRaisesRegex(marti.Error, "ray 17 .*: its direction is 0") as caught:
             marti.run(self.config, scene, rays=rays)
         self.assertEqual(caught.exception.key, "image.rays")
         with self.assertRaisesRegex(marti.Error, "image.integrator"):
             self.result.ray_hits
+
+    def same_result(self, copy, result):
+        pandas.testing.assert_frame_equal(copy.figures, result.figures)
+        numpy.testing.assert_array_equal(copy.image, result.image)
+        self.assertEqual((copy.summary, copy.settings, copy.report().html),
+                         (result.summary, result.settings, result.report().html))
+
+    def test_results_can_be_pickled(self):
+        copy = pickle.loads(pickle.dumps(self.result))
+        self.same_result(copy, self.result)
+        self.same_result(pickle.loads(pickle.dumps(copy)), self.result)
+        with tempfile.TemporaryDirectory() as directory:
+            kept = marti.run(self.config, SMALL, directory=directory, machine__nodes=4)
+            data = pickle.dumps(kept)
+            self.assertLess(len(data), 10000)  # its name, not its files
+            self.same_result(pickle.loads(data), kept)
+        with self.assertRaisesRegex(marti.Error, "no such directory"):
+            pickle.loads(data)
+        with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+            brought = pool.submit(marti.run, self.config, SMALL, machine__nodes=4).result()
+        self.assertEqual(brought.end, self.result.end)
+        numpy.testing.assert_array_equal(brought.image, self.result.image)
 
     def test_the_page_is_shown_in_notebooks(self):
         page = self.result.report()
@@ -202,6 +240,27 @@ class Runs(unittest.TestCase):
             marti.run(machine__nodes=0)
         self.assertEqual((caught.exception.file, caught.exception.line, caught.exception.key),
                          (None, None, "machine.nodes"))
+        with self.assertRaises(marti.Error) as caught:
+            marti.run(scene__source="no:such", structure__max_level=3)
+        self.assertEqual((caught.exception.file, caught.exception.line, caught.exception.key),
+                         (None, None, "scene.source"))
+        with tempfile.TemporaryDirectory() as directory:
+            config = pathlib.Path(directory, "wrong.toml")
+            for text, line, key in (("[machine]\nnode = 4\n", 2, "machine.node"),
+                                    ("[cache]\nsize = 16 KiB\n", 2, "cache.size"),
+                                    ("[cache]\nways = 3\nsize = \"1 KiB\"\n", 3, "cache.size"),
+                                    ("\n[scene]\nsource = \"no: such.obj\"\n", 3, "scene.source"),
+                                    ("[sweep]\nfilter = \"cache.size <\"\n[sweep.axes]\nmachine.nodes = [1]\n", 2,
+                                     "sweep.filter"),
+                                    ("[sweep.axes]\nmachine.nodes = [1, 0]\n", 2, "machine.nodes")):
+                config.write_text(text)
+                with self.assertRaises(marti.Error) as caught:
+                    marti.sweep(config, {"machine.clusters": [1]})
+                self.assertEqual((caught.exception.file, caught.exception.line, caught.exception.key),
+                                 (str(config), line, key), str(caught.exception))
+        with self.assertRaises(marti.Error) as caught:
+            marti.run("missing.toml")
+        self.assertEqual((caught.exception.file, caught.exception.key), ("missing.toml", None))
         for wrong, words in ((lambda: marti.run("missing.toml"), "no such file"),
                              (lambda: marti.run(machine__node=3), "machine.nodes"),
                              (lambda: self.result["hit_rati"], "hit_ratio"),
@@ -220,6 +279,19 @@ class Runs(unittest.TestCase):
             marti.run(scene__source="teapot:20", image__width=4096, image__height=4096, machine__nodes=64)
         self.assertLess(time.monotonic() - began, 20)
         self.assertEqual(marti.run(None, SMALL).end, marti.run(None, SMALL).end)
+
+    def test_ctrl_c_ends_reading_a_scene(self):
+        with tempfile.TemporaryDirectory() as directory:
+            scene = pathlib.Path(directory, "many.obj")
+            side = 900
+            points = "".join(f"v {x} {y} {(x * y) % 7}\n" for y in range(side) for x in range(side))
+            cells = "".join(f"f {y * side + x + 1} {y * side + x + 2} {y * side + x + side + 1}\n"
+                            for y in range(side - 1) for x in range(side - 1))
+            scene.write_text(points + cells)
+            timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                marti.run(None, {"scene.source": scene})
 
     def test_other_threads_go_on_meanwhile(self):
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
@@ -260,6 +332,23 @@ class Sweeps(unittest.TestCase):
         self.assertEqual(self.sweep.points.attrs["units"]["end"], "ps")
         self.assertEqual(self.sweep.best("end", budget=30)["machine.nodes"].max(), 4)
         self.assertIn("<!DOCTYPE html>", self.sweep.report().html)
+
+    def test_sweeps_can_be_pickled(self):
+        copy = pickle.loads(pickle.dumps(self.sweep))
+        self.same(copy)
+        self.same(pickle.loads(pickle.dumps(copy)))
+        self.assertNotEqual(copy.directory, self.sweep.directory)
+        pandas.testing.assert_frame_equal(copy.best("end"), self.sweep.best("end"))
+        self.assertEqual(copy.summary, self.sweep.summary)
+        place = copy.directory
+        del copy
+        self.assertFalse(os.path.exists(place))
+        with tempfile.TemporaryDirectory() as directory:
+            part = marti.sweep(self.config, AXES, SMALL, directory=directory, share="1/2")
+            copy = pickle.loads(pickle.dumps(part))
+            self.assertEqual((copy.complete, copy.summary, copy.directory), (False, part.summary, part.directory))
+            whole = marti.sweep(self.config, AXES, SMALL, directory=directory)
+            self.assertEqual(pickle.loads(pickle.dumps(whole)).directory, whole.directory)
 
     def test_its_own_directory_goes_with_the_sweep(self):
         sweep = marti.sweep(self.config, {"machine.nodes": [1, 2]}, SMALL)
@@ -321,6 +410,24 @@ class Sweeps(unittest.TestCase):
             with distributed.Client(cluster) as client, tempfile.TemporaryDirectory() as directory:
                 self.same(marti.sweep(self.config, AXES, SMALL, directory=directory, executor=client.get_executor(),
                                       shares=3))
+
+    def test_mpi_is_an_executor(self):
+        if importlib.util.find_spec("mpi4py") is None or shutil.which("mpiexec") is None:
+            self.skipTest("mpi4py is not installed (Debian: python3-mpi4py)")
+        with tempfile.TemporaryDirectory() as directory:
+            script = pathlib.Path(directory, "sweep.py")
+            script.write_text(
+                "import marti\nfrom mpi4py.futures import MPIPoolExecutor\n"
+                "if __name__ == '__main__':\n"
+                "    with MPIPoolExecutor() as executor:\n"
+                f"        marti.sweep({str(self.config)!r}, {AXES!r}, {SMALL!r}, directory='out', executor=executor, shares=3)\n")
+            # Open MPI refuses more processes than cores, and the user root, unless it is told otherwise.
+            environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                           "OMPI_MCA_rmaps_base_oversubscribe": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+            subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", script], cwd=directory,
+                           env=environment, check=True, capture_output=True, text=True, timeout=100)
+            self.same(marti.open(pathlib.Path(directory, "out")))
+            self.assertFalse([name for name in os.listdir(pathlib.Path(directory, "out")) if "part" in name or "-of-" in name])
 
     def test_names_with_commas_and_lists(self):
         self.assertEqual(marti._axis_texts({"cache.size": "8KiB", "machine.nodes": numpy.int64(4)}),

@@ -15,13 +15,16 @@
     marti.open("out")                  # what a command has written: a Result, a Sweep or a Study
 
 Names, units and meanings of figures are those of `marti figures`, keys those of `marti config`. The work is done in
-this process, without the interpreter's lock, and Ctrl-C ends it, but for reading a scene and building its tree.
+this process, without the interpreter's lock, and Ctrl-C ends it. Results can be pickled, as executors do that bring
+them from another process.
 """
 
 from __future__ import annotations
 
 import concurrent.futures
+import contextlib
 import functools
+import hashlib
 import html
 import io
 import json as _json
@@ -30,8 +33,9 @@ import pathlib
 import shutil
 import sys
 import tempfile
+import types
 import weakref
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Union
 
 from . import _marti
 from ._marti import Error
@@ -64,17 +68,9 @@ def run(
 
     rays: an array of n x 8 or n x 9 numbers, as docs/scenes.md describes image.rays, traced in the place of an image:
     origin, least distance, direction, greatest distance, 0 for the closest hit or 1 for any."""
-    assignments = _assignments(settings, more)
-    if rays is None:
-        return Result(_marti.run(_file(config), assignments, _file(directory)))
-    import numpy
-
-    array = numpy.asarray(rays)
-    with tempfile.TemporaryDirectory(prefix="marti-") as place:
-        file = os.path.join(place, "rays.npy")
-        numpy.save(file, numpy.ascontiguousarray(array, array.dtype if array.dtype == numpy.float32 else numpy.float64))
-        given = ["image.integrator=rays", f"image.rays={file}"]
-        return Result(_marti.run(_file(config), assignments + given, _file(directory)))
+    with _given_rays(rays) as of_rays:
+        own = _marti.run(_file(config), _assignments(settings, more) + of_rays, _file(directory))
+    return Result(own, _file(directory))
 
 
 def sweep(
@@ -82,6 +78,7 @@ def sweep(
     axes: Mapping[str, Iterable[Any]] | Iterable[str] = (),
     settings: Mapping[str, Any] | None = None,
     *,
+    rays: numpy.ndarray | None = None,
     directory: Path = None,
     threads: int = 0,
     share: str = "",
@@ -95,28 +92,32 @@ def sweep(
     are kept, so that the same call goes on with them; None: they last as long as the Sweep. threads: machines timed at
     a time; 0: as many as the computer has. share: "3/8" times only the third of eight parts of the machines.
 
+    rays: an array, as in run(), traced for every machine. With a directory it is kept there, as rays-HASH.npy.
+
     executor: an executor of concurrent.futures or mpi4py.futures, or Dask's Client.get_executor(), whose workers time
     `shares` parts of the machines. A part that a worker does not bring is asked for again; what an executor that is
     broken leaves is timed here. The workers must see the configuration and the directory."""
     assignments = _assignments(settings, more)
     texts = _axis_texts(axes)
     if executor is None:
-        return Sweep(_marti.sweep(_file(config), texts, assignments, _file(directory), threads, share))
+        with _given_rays(rays, _file(directory)) as of_rays:
+            own = _marti.sweep(_file(config), texts, assignments + of_rays, _file(directory), threads, share)
+        return Sweep(own, _file(directory))
     if share:
         raise ValueError("share: the executor's workers have the shares; leave it out")
     if int(shares) < 1:
         raise ValueError(f"shares: must be 1 or more, not {shares}")
-    own = not _file(directory)
-    place = os.path.abspath(tempfile.mkdtemp(prefix="marti-") if own else _file(directory))
+    place = os.path.abspath(_file(directory) or tempfile.mkdtemp(prefix="marti-"))
     source = os.path.abspath(_file(config)) if _file(config) else ""
     try:
-        _time_shares(executor, int(shares), (source, texts, assignments, place, threads))
-        whole = Sweep(_marti.sweep(source, texts, assignments, place, threads, ""))
+        with _given_rays(rays, place) as of_rays:
+            _time_shares(executor, int(shares), (source, texts, assignments + of_rays, place, threads))
+            whole = Sweep(_marti.sweep(source, texts, assignments + of_rays, place, threads, ""), _file(directory))
     except BaseException:
-        if own:
+        if not _file(directory):
             shutil.rmtree(place, ignore_errors=True)
         raise
-    if own:
+    if not _file(directory):
         weakref.finalize(whole, shutil.rmtree, place, ignore_errors=True)
     return whole
 
@@ -124,7 +125,7 @@ def sweep(
 def open(directory: Path) -> Result | Sweep | Study:
     """What `marti run -o`, `marti sweep -o` or `marti study ... -o` has written into this directory."""
     found = _marti.open(_file(directory))
-    return {_marti.Result: Result, _marti.Sweep: Sweep, _marti.Study: Study}[type(found)](found)
+    return {_marti.Result: Result, _marti.Sweep: Sweep, _marti.Study: Study}[type(found)](found, _file(directory))
 
 
 class Page:
@@ -134,16 +135,7 @@ class Page:
         self.html = text
 
     def save(self, file: Path) -> None:
-        """Writes the page under a temporary name and renames it, so that no half page is left behind."""
-        handle, name = tempfile.mkstemp(dir=os.path.dirname(os.path.abspath(_file(file))), suffix=".html")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as page:
-                page.write(self.html)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, _file(file))
-        except BaseException:
-            os.unlink(name)
-            raise
+        _write(_file(file), self.html.encode())
 
     def _repr_html_(self) -> str:
         return (
@@ -153,15 +145,25 @@ class Page:
 
 
 class _Shown:
-    """What all results have: a summary and a page."""
+    """What all results have: a summary and a page. Pickled they are copies: of what is in a directory of the caller's
+    its name, which must be there where the copy is made, else all that would be written."""
 
-    def __init__(self, own: Any):
+    def __init__(self, own: Any, directory: str = "", summary: str | None = None):
         self._own = own
+        self._kept = os.path.abspath(directory) if directory else ""
+        self._summary = own.summary() if summary is None else summary
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _copied, (self._kept or self._written(), self._summary)
+
+    def _written(self) -> dict[str, bytes]:
+        """The files, by name, of a result that is in no directory of the caller's."""
+        raise NotImplementedError
 
     @property
     def summary(self) -> str:
         """As the command prints it; of what was opened, the answer alone."""
-        return self._own.summary()
+        return self._summary
 
     def report(self) -> Page:
         """The page of `marti report`. A notebook shows it; Page.save() writes it."""
@@ -221,6 +223,13 @@ class Result(_Shown):
         """Writes what `marti run -o` writes."""
         self._own.save(_file(directory))
 
+    def _written(self) -> dict[str, bytes]:
+        if self._own.directory():
+            return _files_in(self._own.directory())
+        with tempfile.TemporaryDirectory(prefix="marti-") as place:
+            self._own.save(place)
+            return _files_in(place)
+
 
 class Sweep(_Shown):
     """The points of a sweep."""
@@ -254,6 +263,14 @@ class Sweep(_Shown):
         no more than the budget."""
         return _frame(self._own.best(figure, budget))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._own.axes():
+            return super().__reduce__()
+        return _without_points, (self.directory, self._kept, self.summary)
+
+    def _written(self) -> dict[str, bytes]:
+        return _files_in(self.directory)
+
 
 class Study(_Shown):
     """The tables of `marti study`."""
@@ -265,6 +282,75 @@ class Study(_Shown):
 
 def _file(name: Path) -> str:
     return "" if name is None else os.fspath(name)
+
+
+def _files_in(directory: str) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in pathlib.Path(directory).iterdir() if file.is_file()}
+
+
+def _copied(written: str | dict[str, bytes], summary: str) -> _Shown:
+    """A result from the name of its directory, or from its files, which last as long as it."""
+    if isinstance(written, str):
+        found = open(written)
+        return type(found)(found._own, written, summary)
+    place = tempfile.mkdtemp(prefix="marti-")
+    try:
+        for name, content in written.items():
+            pathlib.Path(place, name).write_bytes(content)
+        found = open(place)
+    except BaseException:
+        shutil.rmtree(place, ignore_errors=True)
+        raise
+    copy = type(found)(found._own, "", summary)
+    weakref.finalize(copy, shutil.rmtree, place, ignore_errors=True)
+    return copy
+
+
+def _without_points(directory: str, kept: str, summary: str) -> Sweep:
+    """What a share gives while others are missing."""
+    nothing = types.SimpleNamespace(columns=[], rows=[], title="")
+    values = dict(directory=directory, complete=False, summary=summary, points=nothing, axes=[], tables=[])
+    return Sweep(types.SimpleNamespace(**{name: lambda value=value: value for name, value in values.items()}), kept)
+
+
+@contextlib.contextmanager
+def _given_rays(rays: numpy.ndarray | None, directory: str = "") -> Iterator[list[str]]:
+    """The settings by which these rays are traced, while their file is there: in the directory, or for the time being."""
+    if rays is None:
+        yield []
+        return
+    import numpy
+
+    array = numpy.asarray(rays)
+    content = io.BytesIO()
+    numpy.save(content, numpy.ascontiguousarray(array, array.dtype if array.dtype == numpy.float32 else numpy.float64))
+    name = f"rays-{hashlib.sha256(content.getbuffer()).hexdigest()[:16]}.npy"
+    with contextlib.ExitStack() as stack:
+        place = os.path.abspath(directory or stack.enter_context(tempfile.TemporaryDirectory(prefix="marti-")))
+        is_new = not os.path.exists(place)
+        os.makedirs(place, exist_ok=True)
+        file = os.path.join(place, name)
+        if not os.path.exists(file):
+            _write(file, content.getvalue())
+        try:
+            yield ["image.integrator=rays", f"image.rays={file}"]
+        except Error:
+            if is_new and os.listdir(place) == [name]:
+                shutil.rmtree(place, ignore_errors=True)
+            raise
+
+
+def _write(file: str, content: bytes) -> None:
+    """Under a temporary name, which is then changed, so that no half file is left behind."""
+    handle, part = tempfile.mkstemp(dir=os.path.dirname(os.path.abspath(file)))
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(content)
+        os.chmod(part, 0o666 & ~_umask())
+        os.replace(part, file)
+    except BaseException:
+        os.unlink(part)
+        raise
 
 
 def _umask() -> int:

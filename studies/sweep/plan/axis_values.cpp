@@ -30,10 +30,10 @@ bool is_number(const sim::Key& key) {
          key.type != sim::ValueType::boolean;
 }
 
-// Values and ranges in a text. `place` begins its messages.
+// Values and ranges in a text, which stands at `place`.
 class TextReader {
  public:
-  TextReader(const sim::Key& key, std::string place) : key_(key), place_(std::move(place)) {}
+  TextReader(const sim::Key& key, sim::Place place) : key_(key), place_(std::move(place)) {}
 
   std::vector<sim::Value> read(std::string_view rest) {
     for (bool more = true; more;) {
@@ -53,7 +53,7 @@ class TextReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw sim::UserError(place_ + ": " + message); }
+  [[noreturn]] void fail(const std::string& message) const { throw sim::UserError(place_, message); }
 
   // A value in quotation marks, in which two stand for one, as in CSV: it may hold commas. Leaves what
   // follows it.
@@ -206,7 +206,7 @@ class TextReader {
   }
 
   const sim::Key& key_;
-  std::string place_;
+  sim::Place place_;
   std::vector<sim::Value> values_;
 };
 
@@ -225,13 +225,14 @@ void refuse_repeats(const sim::Key& key, const std::vector<sim::Setting>& settin
 }  // namespace
 
 AxisArgument read_axis_argument(const sim::Config& config, const std::string& argument) {
-  const std::string place = "--axis " + sim::shown(argument);
-  const auto fail = [&](const std::string& message) { throw sim::UserError(place + ": " + message); };
+  sim::Place place{"--axis " + sim::shown(argument)};
+  const auto fail = [&](const std::string& message) { throw sim::UserError(place, message); };
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0) {
     fail("must have the form KEY=VALUE,VALUE,...");
   }
   const std::string name(sim::trim(std::string_view(argument).substr(0, equals)));
+  place.key = name;
   const sim::Schema& schema = config.schema();
   const std::optional<std::size_t> found = schema.find(name);
   if (!found) {
@@ -264,7 +265,7 @@ std::vector<sim::Setting> axis_values(const sim::Config& config, std::size_t key
   };
   std::vector<sim::Setting> settings;
   const auto add_text = [&](const std::string& text, int line) {
-    const std::string place = sim::place_in_file(config.name(), line, declared.name);
+    const sim::Place place = sim::place_in_file(config.name(), line, declared.name);
     for (sim::Value& each : TextReader(declared, place).read(text)) {
       settings.push_back({key, {std::move(each)}, line, {}});
     }

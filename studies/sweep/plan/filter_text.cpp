@@ -67,7 +67,7 @@ constexpr std::array<std::string_view, 4> comparing = {"not", "in", "between", "
 
 class Translator {
  public:
-  Translator(const sim::Schema& schema, std::string_view text, bool points, std::string_view place)
+  Translator(const sim::Schema& schema, std::string_view text, bool points, const sim::Place& place)
       : schema_(schema), text_(text), points_(points), place_(place) {}
 
   FilterText translate() {
@@ -88,7 +88,7 @@ class Translator {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw sim::UserError(place_ + ": " + sim::shown(message, sim::all_shown));
+    throw sim::UserError(place_, sim::shown(message, sim::all_shown));
   }
 
   void step() {
@@ -324,7 +324,7 @@ class Translator {
   const sim::Schema& schema_;
   std::string_view text_;
   bool points_;
-  std::string place_;
+  sim::Place place_;
   std::size_t at_ = 0;
   int depth_ = 0;
   int function_depth_ = 0;               // of the outermost function's parenthesis; 0 outside of any
@@ -338,7 +338,7 @@ class Translator {
 bool is_filter_function(std::string_view name) { return holds(functions, name); }
 
 FilterText translate_filter(const sim::Schema& schema, std::string_view text, bool points,
-                            std::string_view place) {
+                            const sim::Place& place) {
   return Translator(schema, text, points, place).translate();
 }
 

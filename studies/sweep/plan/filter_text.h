@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/error.h"
 #include "sim/schema.h"
 
 namespace marti::studies::sweep {
@@ -23,9 +24,9 @@ struct FilterText {
 /// ("64 KiB", "33 MHz", "10 ns"; they become bytes, hertz and ticks), texts in single quotation marks, the
 /// words and, or, not, in, between, is, null, like, glob, case, when, then, else, end, true and false, and
 /// functions that only compute. Anything else, with it every query, comment and second statement, is refused
-/// with the UserError "place: message". `points`: are there named points?
+/// with a UserError at `place`. `points`: are there named points?
 [[nodiscard]] FilterText translate_filter(const sim::Schema& schema, std::string_view text, bool points,
-                                          std::string_view place);
+                                          const sim::Place& place);
 
 /// May the filter call this function? Names are in lower case.
 [[nodiscard]] bool is_filter_function(std::string_view name);

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "sim/config.h"
+#include "sim/error.h"
 
 namespace marti::studies::sweep {
 
 /// A SELECT over the table `points`, whose columns are those of points.csv (tables/query_sandbox.h).
 struct Query {
-  std::string sql;    ///< empty: none is given
-  std::string place;  ///< "FILE:LINE: KEY", for messages
+  std::string sql;   ///< empty: none is given
+  sim::Place place;  ///< in the configuration, for messages
 };
 
 struct QuestionTable {

@@ -28,7 +28,7 @@ int authorize(void* /*user*/, int action, const char* /*first*/, const char* fun
 }  // namespace
 
 SweepFilter::SweepFilter(const sim::Schema& schema, std::string_view text, bool points,
-                         std::string_view place)
+                         const sim::Place& place)
     : text_(translate_filter(schema, text, points, place)),
       place_(place),
       database_(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_MEMORY | SQLite::OPEN_NOMUTEX) {
@@ -54,7 +54,7 @@ void SweepFilter::fail(const char* what, const SQLite::Exception& error) const {
   if (error.getErrorCode() == SQLITE_NOMEM) {
     throw std::bad_alloc();
   }
-  throw sim::UserError(place_ + ": " + what + " (SQLite: " + error.what() + ")");
+  throw sim::UserError(place_, std::string(what) + " (SQLite: " + error.what() + ")");
 }
 
 bool SweepFilter::passes(std::span<const sim::Value> values) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/error.h"
 #include "sim/schema.h"
 #include "studies/sweep/plan/filter_text.h"
 
@@ -18,8 +19,8 @@ namespace marti::studies::sweep {
 /// Decides point by point. The expression is SQLite's, over values and functions only: no table can be read.
 class SweepFilter {
  public:
-  /// See translate_filter. Throws the UserError "place: message" for a text that is not an expression.
-  SweepFilter(const sim::Schema& schema, std::string_view text, bool points, std::string_view place);
+  /// See translate_filter. Throws a UserError at `place` for a text that is not an expression.
+  SweepFilter(const sim::Schema& schema, std::string_view text, bool points, const sim::Place& place);
 
   /// The columns it compares: indices of keys, or FilterText::point, whose value is a text.
   [[nodiscard]] std::span<const std::size_t> columns() const { return text_.columns; }
@@ -33,7 +34,7 @@ class SweepFilter {
   [[noreturn]] void fail(const char* what, const SQLite::Exception& error) const;
 
   FilterText text_;
-  std::string place_;
+  sim::Place place_;
   SQLite::Database database_;
   std::optional<SQLite::Statement> statement_;
 };

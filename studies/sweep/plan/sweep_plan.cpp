@@ -35,23 +35,25 @@ std::string plain_values(const sim::Key& key, const std::vector<sim::Value>& val
 // The frame and the machine of a point, or why they cannot be had.
 struct Outcome {
   std::optional<ReadPoint> read;
-  std::string error;
+  std::optional<sim::UserError> error;
 };
 
-Outcome read_outcome(const sim::Config& config) {
+Outcome read_outcome(const sim::Config& config, sim::WorkMeter* meter) {
   Outcome outcome;
   try {
     outcome.read = read_point(config);
+    outcome.read->frame.wait_with(meter);
   } catch (const sim::UserError& error) {
-    outcome.error = error.what();
+    outcome.error = error;
   }
   return outcome;
 }
 
 class Planner {
  public:
-  Planner(sim::Config& config, std::span<const std::string> axes)
+  Planner(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter)
       : config_(config),
+        meter_(meter),
         prices_(keys::read_prices(config)),
         filter_(config.text("sweep.filter")),
         skip_invalid_(config.boolean("sweep.skip_invalid")),
@@ -126,9 +128,7 @@ class Planner {
       std::iota(passing.begin(), passing.end(), std::uint64_t{0});
       return passing;
     }
-    const std::string where = config_.where("sweep.filter");
-    SweepFilter filter(config_.schema(), filter_, points_.named(),
-                       sim::shown(where) + (where.starts_with("--set ") ? "" : ": sweep.filter"));
+    SweepFilter filter(config_.schema(), filter_, points_.named(), config_.place("sweep.filter"));
     std::vector<sim::Value> values(filter.columns().size());
     for (std::uint64_t point = 0; point < points_.size(); ++point) {
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -170,11 +170,11 @@ class Planner {
 
   [[nodiscard]] Outcome read_base(std::uint64_t point, const ReadPoint& read) const {
     if (table_.base.empty()) {
-      return read_outcome(one_node_config(read));
+      return read_outcome(one_node_config(read), meter_);
     }
     std::vector<sim::Setting> settings = points_.settings(point);
     settings.insert(settings.end(), table_.base.begin(), table_.base.end());
-    return read_outcome(config_.with(settings));
+    return read_outcome(config_.with(settings), meter_);
   }
 
   void add(std::span<const std::uint64_t> points) {
@@ -190,14 +190,14 @@ class Planner {
       read[i].wants_base = !bases_.contains(group) && wanted.emplace(group, i).second;
     }
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      read[i].point = read_outcome(config_.with(points_.settings(points[i])));
+      read[i].point = read_outcome(config_.with(points_.settings(points[i])), meter_);
       if (read[i].wants_base && read[i].point.read) {
         read[i].base = read_base(points[i], *read[i].point.read);
       }
     });
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!read[i].point.read) {
-        skip(points[i], read[i].point.error, false);
+        skip(points[i], *read[i].point.error, false);
         continue;
       }
       ReadPoint& point = *read[i].point.read;
@@ -209,18 +209,19 @@ class Planner {
       if (const Base& base = bases_.at(group); base.machine) {
         enter_point(points[i], point, *base.machine);
       } else {
-        skip(points[i], base.error, true);
+        skip(points[i], *base.error, true);
       }
     }
   }
 
-  void skip(std::uint64_t point, const std::string& error, bool of_base) {
+  void skip(std::uint64_t point, const sim::UserError& error, bool of_base) {
     if (!skip_invalid_) {
-      throw sim::UserError(error + (of_base ? " (the base of the point " : " (the point ") +
-                           sim::shown(points_.text(point)) +
-                           "; sweep.skip_invalid = true leaves out such points)");
+      throw sim::UserError(error.what() + std::string(of_base ? " (the base of the point " : " (the point ") +
+                               sim::shown(points_.text(point)) +
+                               "; sweep.skip_invalid = true leaves out such points)",
+                           error);
     }
-    plan_.skipped.push_back({points_.text(point), of_base ? error + " (its base)" : error});
+    plan_.skipped.push_back({points_.text(point), error.what() + std::string(of_base ? " (its base)" : "")});
   }
 
   void enter_base(std::uint64_t group, Outcome base) {
@@ -256,9 +257,10 @@ class Planner {
     if (!table_.compare) {
       return;
     }
-    Outcome compare = read_outcome(config_.with(*table_.compare));
+    Outcome compare = read_outcome(config_.with(*table_.compare), meter_);
     if (!compare.read) {
-      throw sim::UserError(compare.error + " (the machine of [sweep.compare])");
+      throw sim::UserError(compare.error->what() + std::string(" (the machine of [sweep.compare])"),
+                           *compare.error);
     }
     refuse_unused(*table_.compare, compare.read->config, "the machine of [sweep.compare]");
     note_use(compare.read->config);
@@ -298,7 +300,7 @@ class Planner {
     refuse_unused(table_.base, config_, "any machine of the sweep");
     // An axis may, like an assignment, switch off a part of the file's own machine: that part's keys are no
     // error.
-    if (const Outcome own = read_outcome(config_.with({})); own.read) {
+    if (const Outcome own = read_outcome(config_.with({}), meter_); own.read) {
       for (std::size_t key = 0; key < used_.size(); ++key) {
         if (own.read->config.used_at(key)) {
           config_.use(key);
@@ -309,6 +311,7 @@ class Planner {
   }
 
   sim::Config& config_;
+  sim::WorkMeter* meter_;
   keys::Prices prices_;
   std::string filter_;
   bool skip_invalid_;
@@ -319,7 +322,7 @@ class Planner {
   // What the points of a group are measured against: a machine, or why it cannot be built.
   struct Base {
     std::optional<std::size_t> machine;
-    std::string error;
+    std::optional<sim::UserError> error;
   };
   std::unordered_map<std::uint64_t, Base> bases_;
   MachineList found_;
@@ -341,8 +344,8 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   return points * (machine + 2 * known + point + 4 * sizeof(std::size_t));
 }
 
-SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes) {
-  return Planner(config, axes).plan();
+SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter) {
+  return Planner(config, axes, meter).plan();
 }
 
 }  // namespace marti::studies::sweep

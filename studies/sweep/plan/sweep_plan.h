@@ -88,8 +88,10 @@ struct SweepPlan {
 /// all host cores; the plan is the same at any number of them. A scene that is a file is opened: its content
 /// is part of the frame's key. Throws UserError naming file, line and key; for a point whose machine cannot
 /// be built, of the first such point in order, with what the point gives; for a plan beyond
-/// host_machine.memory_limit, before its points are read.
-[[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {});
+/// host_machine.memory_limit, before its points are read. `meter` may stop the planning and is that of its
+/// frames; null: nobody waits.
+[[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {},
+                                   sim::WorkMeter* meter = nullptr);
 
 /// What is known of a plan before it runs: what its store holds already, and what it needs.
 struct SweepOutlook {

@@ -54,17 +54,17 @@ class TableReader {
   }
 
   void add_argument(const std::string& argument) {
-    const std::string place = "--axis " + sim::shown(argument) + ": ";
     AxisArgument given = read_axis_argument(config_, argument);
     const std::string& name = config_.schema().names()[given.key];
+    const sim::Place place{"--axis " + sim::shown(argument), {}, 0, name};
     if (!sweepable(name)) {
-      throw sim::UserError(place + std::string(not_sweepable));
+      throw sim::UserError(place, std::string(not_sweepable));
     }
     if (!swept_.emplace(given.key, 0).second) {
-      throw sim::UserError(place + "another --axis sweeps over this key");
+      throw sim::UserError(place, "another --axis sweeps over this key");
     }
     if (config_.given_at(given.key) && config_.where(name).starts_with("--set")) {
-      throw sim::UserError(place + "\"" + sim::shown(config_.where(name)) + "\" would have no effect");
+      throw sim::UserError(place, "\"" + sim::shown(config_.where(name)) + "\" would have no effect");
     }
     SweepAxis axis{SweepAxis::Kind::list, 0, {given.key}, {}, {}};
     for (sim::Setting& step : given.steps) {

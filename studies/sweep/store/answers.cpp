@@ -62,10 +62,10 @@ tables::Table table_of(const QuestionTable& wanted, const tables::QuerySandbox::
   for (std::size_t i = 0; i < found.names.size(); ++i) {
     const std::string& name = found.names[i];
     if (!tables::is_plain_name(name, true) || !seen.insert(name).second) {
-      throw sim::UserError(wanted.rows.place +
-                           ": each column needs a name of its own, of lower-case letters, digits, '_' and "
+      throw sim::UserError(wanted.rows.place,
+                           "each column needs a name of its own, of lower-case letters, digits, '_' and "
                            "'.': AS name (column " +
-                           std::to_string(i + 1) + ")");
+                               std::to_string(i + 1) + ")");
     }
     columns.push_back(point_column(name));
     columns.back().type = tables::common_type(
@@ -95,9 +95,9 @@ tables::Cell value_of(const tables::QuerySandbox::Rows& found) {
   return found.rows.empty() ? tables::Cell() : found.rows.front().front();
 }
 
-tables::Verdict verdict_of(const tables::Cell& agrees, const std::string& place) {
+tables::Verdict verdict_of(const tables::Cell& agrees, const sim::Place& place) {
   if (std::holds_alternative<std::string>(agrees)) {
-    throw sim::UserError(place + ": must give 1, 0 or nothing, not a text");
+    throw sim::UserError(place, "must give 1, 0 or nothing, not a text");
   }
   const std::optional<double> number = tables::number_of(agrees);
   return number ? tables::verdict_of(*number != 0.0) : tables::Verdict::not_measured;

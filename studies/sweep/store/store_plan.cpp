@@ -177,7 +177,7 @@ void enter_question(tables::SqliteConnection& connection, const Question& questi
   std::int64_t position = 0;
   const auto add = [&](const char* kind, const std::string& name, const std::string& text, const Query& query,
                        const Query& agrees = {}) {
-    insert.run({position++, kind, name, text, query.sql, query.place, agrees.sql, agrees.place});
+    insert.run({position++, kind, name, text, query.sql, query.place.text, agrees.sql, agrees.place.text});
   };
   add("answer", "", question.asks, question.answer);
   for (const QuestionTable& table : question.tables) {

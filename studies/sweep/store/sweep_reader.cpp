@@ -112,14 +112,14 @@ Question SweepReader::question() const {
       "SELECT kind, name, text, sql, place, agrees, agrees_place FROM question ORDER BY position");
   while (rows.next()) {
     const std::string kind = rows.text(0);
-    const Query query{rows.text(3), rows.text(4)};
+    const Query query{rows.text(3), {rows.text(4)}};
     if (kind == "answer") {
       question.asks = rows.text(2);
       question.answer = query;
     } else if (kind == "table") {
       question.tables.push_back({rows.text(1), rows.text(2), query});
     } else {
-      question.claims.push_back({rows.text(1), rows.text(2), query, {rows.text(5), rows.text(6)}});
+      question.claims.push_back({rows.text(1), rows.text(2), query, {rows.text(5), {rows.text(6)}}});
     }
   }
   return question;

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "accel/structure.h"
+#include "sim/work_meter.h"
 #include "tests/support/measured_memory.h"
 #include "tests/support/user_error.h"
 
@@ -80,6 +81,20 @@ TEST_P(BuildMemory, NeverExceedsTheBudget) {
   }
   // The limits refuse this tree; a larger limit allows it.
   EXPECT_GT(test::peak_bytes([&] { (void)build(2048 * mebibyte); }), 9 * mebibyte);
+}
+
+// A tree that nobody waits for any more is not built.
+TEST_P(BuildMemory, IsAskedWhetherSomebodyWaits) {
+  sim::WorkMeter meter;
+  StructureOptions options = options_of(2048 * mebibyte);
+  for (sim::MemoryBudget* const memory :
+       {&options.octree.memory, &options.bsp.memory, &options.grid.memory, &options.bvh.memory}) {
+    memory->wait_with(&meter);
+  }
+  const auto triangles = scattered(500);
+  EXPECT_NO_THROW((void)make_structure(GetParam(), triangles, options));
+  meter.stop();
+  EXPECT_THROW((void)make_structure(GetParam(), triangles, options), sim::Stopped);
 }
 
 // The message about a structure that is built.

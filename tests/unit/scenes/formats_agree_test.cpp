@@ -7,6 +7,8 @@
 
 #include "loaded_scene.h"
 #include "random_mesh.h"
+#include "scenes/procedural.h"
+#include "sim/work_meter.h"
 #include "tests/unit/processors/program_scenes.h"
 #include "text_scene.h"
 
@@ -69,6 +71,30 @@ TEST(Formats, TextAndBinaryGiveTheTrianglesAndTheImageOfGltf) {
       expect_same_image(built, scene);
     }
   }
+}
+
+// A scene that nobody waits for any more is not read.
+TEST(Formats, AskWhetherSomebodyWaits) {
+  const SceneFolder folder;
+  const RandomMesh mesh(1, 6);
+  sim::WorkMeter meter;
+  FileOptions options;
+  options.memory.wait_with(&meter);
+  const auto open_all = [&](bool stops) {
+    for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"mesh.obj", mesh.obj()},
+                                      {"little.ply", mesh.ply(PlyOrder::little)},
+                                      {"mesh.glb", mesh.gltf().glb()}}) {
+      if (stops) {
+        EXPECT_THROW((void)folder.open(name, bytes, options), sim::Stopped) << name;
+      } else {
+        EXPECT_NO_THROW((void)folder.open(name, bytes, options)) << name;
+      }
+    }
+  };
+  open_all(false);
+  meter.stop();
+  open_all(true);
+  EXPECT_THROW((void)make_procedural("tetra:3", options.memory), sim::Stopped);
 }
 
 }  // namespace

@@ -67,6 +67,30 @@ TEST(Config, ACompositeIsKeptAsTomlInOneLine) {
       "a.toml:1: scene.source: must be a text in quotation marks, a list or a table, not the integer 3");
 }
 
+// What a message says of its place, programs need not look for in it.
+TEST(Config, ErrorsHaveTheirPlace) {
+  using Parts = std::tuple<std::string, int, std::string>;
+  const auto place_of = [](const auto& work) -> Parts {
+    try {
+      (void)work();
+    } catch (const UserError& error) {
+      EXPECT_TRUE(std::string_view(error.what()).starts_with(error.place().text)) << error.what();
+      return {error.place().file, error.place().line, error.place().key};
+    }
+    return {};
+  };
+  EXPECT_EQ(place_of([] { return read("\n[cache]\nsize = \"3 apples\""); }),
+            (Parts{"a.toml", 3, "cache.size"}));
+  EXPECT_EQ(place_of([] { return read("[cache]\nsiz = 3"); }), (Parts{"a.toml", 2, "cache.siz"}));
+  EXPECT_EQ(place_of([] { return read("[cache]\nsize = 3 apples"); }), (Parts{"a.toml", 2, "cache.size"}));
+  EXPECT_EQ(place_of([] { return read("", {"nodes=none"}); }), (Parts{"", 0, "nodes"}));
+  EXPECT_EQ(place_of([] { return read("", {"nodes"}); }), (Parts{"", 0, ""}));
+  const Config config = read("nodes = 4");
+  EXPECT_EQ(place_of([&]() -> int { config.fail("nodes", "is odd"); }), (Parts{"a.toml", 1, "nodes"}));
+  EXPECT_EQ(place_of([&]() -> int { config.fail("cache.size", "is odd"); }),
+            (Parts{"a.toml", 0, "cache.size"}));
+}
+
 TEST(Config, DefaultsHoldWhereNothingIsGiven) {
   const Config config = read("");
   EXPECT_EQ(config.size("cache.size"), 16 * 1024);

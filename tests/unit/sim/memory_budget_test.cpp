@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "sim/work_meter.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/user_error.h"
 
@@ -35,6 +36,22 @@ TEST(MemoryBudget, RefusesWithKeyAndBothFigures) {
   EXPECT_NE(MemoryBudget(mebibyte).excess(2 * mebibyte).find("three quarters of what the host"),
             std::string::npos);
   EXPECT_TRUE(budget.excess(6 * mebibyte).empty());
+}
+
+TEST(MemoryBudget, AsksWhetherSomebodyWaits) {
+  WorkMeter meter;
+  MemoryBudget budget(100);
+  budget.wait_with(&meter);
+  MemoryBudget later = budget;
+  EXPECT_NO_THROW(later.take(1, "a", ""));
+  EXPECT_NO_THROW(later.end_if_stopped());
+  meter.stop();
+  EXPECT_THROW(later.take(1, "a", ""), Stopped);
+  EXPECT_THROW(later.require(0, "a", ""), Stopped);
+  EXPECT_THROW(later.end_if_stopped(), Stopped);
+  EXPECT_EQ(later.left(), 99U);
+  later.wait_with(nullptr);
+  EXPECT_NO_THROW(later.take(1, "a", ""));
 }
 
 // A root directory with only what usable_memory() reads.

@@ -41,18 +41,18 @@ TEST(QuerySandbox, GivesRowsOfAnyType) {
   QuerySandbox sandbox = three_rows();
   std::set<std::string> reads;
   const QuerySandbox::Rows found = sandbox.run(
-      "SELECT \"machine.nodes\", end / 3.0 AS third, shown(end, 'ps') AS text, name FROM points; ", "f:1: k",
-      &reads);
+      "SELECT \"machine.nodes\", end / 3.0 AS third, shown(end, 'ps') AS text, name FROM points; ",
+      sim::Place{"f:1: k"}, &reads);
   EXPECT_EQ(found.names, (std::vector<std::string>{"machine.nodes", "third", "text", "name"}));
   ASSERT_EQ(found.rows.size(), 3U);
   EXPECT_EQ(found.rows[1], (std::vector<Cell>{std::int64_t{4}, 400'000'000 / 3.0, "400.000 us", Cell()}));
   EXPECT_EQ(reads, (std::set<std::string>{"end", "machine.nodes", "name"}));
-  EXPECT_EQ(sandbox.run("SELECT count(*) FROM points", "").rows.front().front(), Cell(std::int64_t{3}));
+  EXPECT_EQ(sandbox.run("SELECT count(*) FROM points", {}).rows.front().front(), Cell(std::int64_t{3}));
 }
 
 TEST(QuerySandbox, GivesTextsThatCanBePrinted) {
   QuerySandbox sandbox = three_rows();
-  EXPECT_EQ(sandbox.run("SELECT x'41ff', 'a' || char(10) || char(27) || char(0) || 'b'", "").rows.front(),
+  EXPECT_EQ(sandbox.run("SELECT x'41ff', 'a' || char(10) || char(27) || char(0) || 'b'", {}).rows.front(),
             (std::vector<Cell>{"A\\xff", "a\\n\\u001b\\u0000b"}));
 }
 
@@ -105,10 +105,10 @@ TEST(QuerySandbox, ReadsItsTableAndComputes) {
        "f:1: k: gives more than 10000 rows"},
       {std::string("SELECT 1\0, 2", 11), "f:1: k: has a character that no query has"}};
   test::expect_messages(cases, [&](const std::string& sql) {
-    return user_error_of([&] { (void)sandbox.run(sql, "f:1: k"); });
+    return user_error_of([&] { (void)sandbox.run(sql, {"f:1: k"}); });
   });
   EXPECT_FALSE(fs::exists(file));
-  EXPECT_EQ(sandbox.run("SELECT count(*) FROM points", "").rows.front().front(), Cell(std::int64_t{3}));
+  EXPECT_EQ(sandbox.run("SELECT count(*) FROM points", {}).rows.front().front(), Cell(std::int64_t{3}));
 }
 
 sim::Config config_with(const std::string& question) {

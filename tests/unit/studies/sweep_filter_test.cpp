@@ -23,7 +23,7 @@ const sim::Schema& schema() {
 
 // Evaluates a filter whose columns are looked up by name.
 bool passes(std::string_view text, const std::vector<std::pair<std::string, sim::Value>>& row) {
-  SweepFilter filter(schema(), text, true, "here");
+  SweepFilter filter(schema(), text, true, sim::Place{"here"});
   std::vector<sim::Value> values;
   for (const std::size_t column : filter.columns()) {
     const std::string name = column == FilterText::point ? "point" : schema().names()[column];
@@ -37,7 +37,7 @@ bool passes(std::string_view text, const std::vector<std::pair<std::string, sim:
 }
 
 std::string error_of(std::string_view text, bool points = true) {
-  return user_error_of([&] { SweepFilter(schema(), text, points, "here"); });
+  return user_error_of([&] { SweepFilter(schema(), text, points, sim::Place{"here"}); });
 }
 
 RC_GTEST_PROP(SweepFilter, DecidesAsTheSameExpressionInCpp, ()) {
@@ -144,7 +144,7 @@ RC_GTEST_PROP(SweepFilter, SurvivesAnyText, ()) {
     text += part + " ";
   }
   try {
-    SweepFilter filter(schema(), text, true, "here");
+    SweepFilter filter(schema(), text, true, sim::Place{"here"});
     std::vector<sim::Value> values;
     for (const std::size_t column : filter.columns()) {
       values.push_back(column == FilterText::point ? sim::Value(std::string("a"))
