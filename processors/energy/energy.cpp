@@ -202,6 +202,15 @@ std::int64_t of_leakage(const EnergyUnits& units, std::int64_t area, sim::Ticks 
   return sum.in_units_of(yoctojoules_a_femtojoule);
 }
 
+// Sets the total of the parts.
+void add_up(EnergyResult& result) {
+  Sum total("the energy of the frame");
+  for (std::size_t i = 0; i < energy_parts; ++i) {
+    total.add(result.*EnergyResult::counters()[i].member, 1);
+  }
+  result.total = total.in_units_of(1);
+}
+
 }  // namespace
 
 void check_energy(const machine::MachineConfig& config) {
@@ -210,22 +219,25 @@ void check_energy(const machine::MachineConfig& config) {
   }
 }
 
-EnergyResult energy_of(const machine::MachineConfig& config, const EnergyCounts& counts) {
+EnergyResult energy_of_accesses(const machine::MachineConfig& config, const EnergyCounts& counts) {
   const EnergyUnits units = energy_units(config);
   EnergyResult result;
-  result.operations = of_operations(config, units, counts);
-  result.unit = of_tests(config, units, counts);
   result.l1 = of_first_level(units, counts);
   result.l2 = of_second_level(units, counts);
   result.interconnect = of_interconnect(units, counts);
   result.memory = of_memory(units, counts);
+  add_up(result);
+  return result;
+}
+
+EnergyResult energy_of(const machine::MachineConfig& config, const EnergyCounts& counts) {
+  const EnergyUnits units = energy_units(config);
+  EnergyResult result = energy_of_accesses(config, counts);
+  result.operations = of_operations(config, units, counts);
+  result.unit = of_tests(config, units, counts);
   add_areas(config, units, counts.traversal, result);
   result.leakage = of_leakage(units, result.area, counts.end);
-  Sum total("the energy of the frame");
-  for (std::size_t i = 0; i < energy_parts; ++i) {
-    total.add(result.*EnergyResult::counters()[i].member, 1);
-  }
-  result.total = total.in_units_of(1);
+  add_up(result);
   return result;
 }
 

@@ -75,6 +75,10 @@ inline constexpr std::size_t energy_parts = 7;
 /// Throws KeyError when a figure that the machine needs is not known, or is out of range.
 void check_energy(const machine::MachineConfig& config);
 
+/// As energy_of(), of caches, interconnects and memory alone: what nodes take, leakage and areas are 0.
+[[nodiscard]] EnergyResult energy_of_accesses(const machine::MachineConfig& config,
+                                              const EnergyCounts& counts);
+
 /// Each part is rounded once, to the nearest fJ. The energy must be on. Throws as check_energy() does, and
 /// KeyError for an energy or an area that does not fit 64 bits.
 [[nodiscard]] EnergyResult energy_of(const machine::MachineConfig& config, const EnergyCounts& counts);

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "processors/energy/energy.h"
 #include "processors/node/memory_system.h"
+#include "processors/replay/energy_counts.h"
 #include "processors/replay/replay_parts.h"
 #include "processors/walk/lines_under_way.h"
 #include "processors/walk/node_caches.h"
@@ -253,7 +255,12 @@ DrivenResult drive_memory(const machine::MachineConfig& config, const DrivenOpti
   if (std::uint64_t{config.nodes} * options.outstanding > most_places) {
     throw sim::KeyError("machine.nodes", "the nodes have more than 2^24 places for requests together");
   }
-  return Driver(config, options, next).run();
+  energy::check_energy(config);
+  DrivenResult driven = Driver(config, options, next).run();
+  if (config.energy.on()) {
+    driven.machine.energy = energy::energy_of_accesses(config, energy_counts(config, driven));
+  }
+  return driven;
 }
 
 }  // namespace marti::processors::replay

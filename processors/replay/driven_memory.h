@@ -33,7 +33,8 @@ struct DrivenOptions {
 };
 
 struct DrivenResult {
-  /// With `end`, when the last request was done, and one cluster; without nodes.
+  /// With `end`, when the last request was done, and one cluster; without nodes. Its energy, if that is on,
+  /// is that of caches, interconnect and memory.
   MachineResult machine;
   /// How long reads took from when they came. Untimed ones come when they are asked for.
   memory::WaitStatistics latency;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "processors/energy/energy.h"
+#include "processors/replay/driven_memory.h"
 #include "processors/replay/replay.h"
 
 namespace marti::processors::replay {
@@ -10,5 +11,9 @@ namespace marti::processors::replay {
 [[nodiscard]] energy::EnergyCounts energy_counts(const program::WorkLog& log,
                                                  const machine::MachineConfig& config,
                                                  const MachineResult& result);
+
+/// The counts of a memory by itself, with the caches that its requests went through.
+[[nodiscard]] energy::EnergyCounts energy_counts(const machine::MachineConfig& config,
+                                                 const DrivenResult& driven);
 
 }  // namespace marti::processors::replay

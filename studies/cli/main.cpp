@@ -258,15 +258,20 @@ std::string identity_of_study(const std::string& name, const sim::Config& config
   return text;
 }
 
+// Refuses a directory with another kind of result.
+sim::MadeDirectory prepare_study(const std::string& directory) {
+  tables::refuse_other_results(directory, tables::database_name);
+  tables::refuse_store_of_sweep(directory);
+  return show::prepare_output(directory);
+}
+
 // Runs a study; without an output directory it only prints. A fault of the program that the study finds is
 // thrown as InternalError, once all files are written.
 template <class Study>
 void run_study(const char* name, const StudyArguments& arguments, const sim::Schema& schema,
                const Study& study) {
   sim::Config config = keys::read_config_or_defaults(schema, arguments.config, arguments.assignments);
-  tables::refuse_other_results(arguments.directory, tables::database_name);
-  tables::refuse_store_of_sweep(arguments.directory);
-  const sim::MadeDirectory made = show::prepare_output(arguments.directory);
+  const sim::MadeDirectory made = prepare_study(arguments.directory);
   if (!arguments.directory.empty()) {
     host::load_image_library();
   }
@@ -424,6 +429,7 @@ struct MemoryArguments {
   std::string config;
   std::string trace;
   std::vector<std::string> assignments;
+  std::string directory;
   driven::DrivenChoices choices;
 };
 
@@ -450,13 +456,22 @@ void add_memory_command(CLI::App& app, MemoryArguments& arguments) {
       ->type_name("KEY=VALUES")
       ->allow_extra_args(false);
   command->add_flag("--json", arguments.choices.json, "prints the figures as JSON");
+  add_directory(command, "-o,--output", arguments.directory,
+                "directory for tables and charts, for marti report");
   command->callback([&] {
     sim::Config config = keys::read_config(run::run_schema(), arguments.config, arguments.assignments);
+    const sim::MadeDirectory made = prepare_study(arguments.directory);
     sim::WorkMeter meter;
     std::optional<progress::ShownMeter> shown(std::in_place, meter);
-    const std::string text = sim::with_places(
+    const driven::DrivenOutput output = sim::with_places(
         config, [&] { return driven::drive(config, arguments.trace, arguments.choices, &meter); });
     shown.reset();  // before anything is printed
+    std::string text = output.printed;
+    if (!arguments.directory.empty()) {
+      for (const std::filesystem::path& file : tables::write_study(output.files, arguments.directory)) {
+        text += arguments.choices.json ? "" : "wrote " + file.string() + "\n";
+      }
+    }
     print(text);
   });
 }

@@ -9,6 +9,7 @@
 
 #include "sim/config.h"
 #include "sim/work_meter.h"
+#include "studies/tables/study_files.h"
 
 namespace marti::studies::driven {
 
@@ -19,11 +20,16 @@ struct DrivenChoices {
   bool json = false;
 };
 
+struct DrivenOutput {
+  std::string printed;        ///< text or JSON
+  tables::StudyOutput files;  ///< what a page shows of it
+};
+
 /// Serves the trace's requests with the memory of the configuration, whose nodes and scene it does not use,
-/// and returns what came out, as text or JSON: latency of reads, and the figures of the catalogue that the
-/// memory has; with axes a table, or an array, of the configurations. Throws UserError for a configuration
+/// and returns what came out: latency of reads, and the figures of the catalogue that the memory has; with
+/// axes a table, or an array, of the configurations. Throws UserError for a configuration
 /// without a shared memory and for a wrong trace.
-[[nodiscard]] std::string drive(sim::Config& config, const std::filesystem::path& trace,
-                                const DrivenChoices& choices, sim::WorkMeter* meter);
+[[nodiscard]] DrivenOutput drive(sim::Config& config, const std::filesystem::path& trace,
+                                 const DrivenChoices& choices, sim::WorkMeter* meter);
 
 }  // namespace marti::studies::driven

@@ -27,7 +27,8 @@ marti run -- "$source/configs/marti.toml" "${small[@]}" --within 10%
 marti compare -- run other
 marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 -o traces
 marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 --format csv -o traces
-marti memory -- "$source/configs/marti.toml" traces/requests.csv --set machine.nodes=2
+marti memory -- "$source/configs/marti.toml" traces/requests.csv --set machine.nodes=2 -o memory
+marti report -- memory
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
 marti compare -- run sweep

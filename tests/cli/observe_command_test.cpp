@@ -361,19 +361,20 @@ TEST(TraceCommand, ReferencesOfAnyNodeHaveTimes) {
 TEST(MemoryCommand, ServesTracesOfAllForms) {
   const TemporaryDirectory directory;
   const fs::path out = directory.path() / "traces";
-  const std::string options =
-      small_run + " --set machine.nodes=3 --set cache.line=64 --set memory.model=dram";
+  const std::string machine =
+      " --set machine.nodes=3 --set cache.line=64 --set memory.model=dram --set energy.preset=45nm";
+  const std::string options = small_run + machine;
   const nlohmann::json run = printed_json("run " + options)["figures"]["machine"];
   for (const char* const format : {"csv", "ramulator-loadstore", "dramsim3", "gem5"}) {
     ASSERT_EQ(marti("trace " + options + " --format " + format + " -o " + quoted(out)).status, 0) << format;
   }
   const auto served = [&](const char* file, const std::string& more = "") {
-    return printed_json("memory " + shipped("marti.toml") + " " + quoted(out / file) +
-                        " --set machine.nodes=3 --set cache.line=64 --set memory.model=dram" + more);
+    return printed_json("memory " + shipped("marti.toml") + " " + quoted(out / file) + machine + more);
   };
   const nlohmann::json csv = served("requests.csv");
-  for (const char* const figure : {"interconnect_reads", "interconnect_writes", "interconnect_bytes",
-                                   "dram_row_hits", "dram_row_conflicts", "interconnect_wait_sum"}) {
+  for (const char* const figure :
+       {"interconnect_reads", "interconnect_writes", "interconnect_bytes", "dram_row_hits",
+        "dram_row_conflicts", "interconnect_wait_sum", "energy_interconnect", "energy_memory"}) {
     EXPECT_EQ(csv["figures"][figure], run[figure]) << figure;
   }
   EXPECT_EQ(csv["latency"]["waited_for_a_place"], 0);
@@ -409,20 +410,30 @@ TEST(MemoryCommand, ServesTracesOfAllForms) {
 TEST(MemoryCommand, HasCachesBeforeItAndAxes) {
   const TemporaryDirectory directory;
   const fs::path file = directory.path() / "references-00000.csv";
-  const std::string machine = small_run + " --set machine.nodes=1 --set cache.organisation=split";
+  const std::string machine =
+      small_run + " --set machine.nodes=1 --set cache.organisation=split --set energy.preset=45nm";
   const nlohmann::json figures = printed_json("run " + machine)["figures"]["machine"];
   ASSERT_EQ(marti("trace " + machine + " --references --format csv -o " + quoted(directory.path())).status,
             0);
   const std::string memory = "memory " + shipped("marti.toml") + " " + quoted(file) +
                              " --set machine.nodes=1 --caches --outstanding 1";
-  const nlohmann::json points = printed_json(
-      memory +
-      " --set cache.organisation=split --axis memory.access_cycles=4,9 --axis l2.sharing=none,shared");
+  const nlohmann::json points =
+      printed_json(memory +
+                   " --set cache.organisation=split --set energy.preset=45nm --axis memory.access_cycles=4,9 "
+                   "--axis l2.sharing=none,shared");
   ASSERT_EQ(points.size(), 4U);
   for (const nlohmann::json& point : points) {
     EXPECT_EQ(point["caches"]["hits"], figures["hits"]);
     EXPECT_EQ(point["caches"]["misses"], figures["misses"]);
     EXPECT_EQ(point["figures"]["interconnect_reads"], figures["misses"]);
+    EXPECT_EQ(point["figures"]["energy_l1"], figures["energy_l1"]);
+    const bool alone = point["settings"]["l2.sharing"] == "none";
+    EXPECT_EQ(point["figures"]["energy_memory"] == figures["energy_memory"], alone);
+    EXPECT_EQ(point["figures"]["energy_total"],
+              point["figures"]["energy_l1"].get<std::int64_t>() +
+                  point["figures"]["energy_l2"].get<std::int64_t>() +
+                  point["figures"]["energy_interconnect"].get<std::int64_t>() +
+                  point["figures"]["energy_memory"].get<std::int64_t>());
   }
   EXPECT_EQ(points[1]["settings"], nlohmann::json({{"memory.access_cycles", "4"}, {"l2.sharing", "shared"}}));
   EXPECT_LT(points[0]["latency"]["mean"], points[2]["latency"]["mean"]);
@@ -437,6 +448,36 @@ TEST(MemoryCommand, HasCachesBeforeItAndAxes) {
   expect_refused("memory " + shipped("marti.toml") + " " + quoted(directory.path() / "plain.trace") +
                      " --caches --set cache.organisation=split",
                  "the column kind");
+}
+
+// What -o writes is what marti report shows: the answer first, and every chart that the memories have.
+TEST(MemoryCommand, HasAPage) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory.path() / "out";
+  ASSERT_EQ(marti("trace " + small_run + " --format csv -o " + quoted(directory.path())).status, 0);
+  const std::string memory = "memory " + shipped("marti.toml") + " " +
+                             quoted(directory.path() / "requests.csv") +
+                             " --set memory.model=dram --set energy.preset=45nm -o " + quoted(out);
+  const Outcome one = marti(memory);
+  ASSERT_EQ(one.status, 0) << one.output;
+  EXPECT_FALSE(names_in(out).contains("memory_axis.vl.json"));
+  const Outcome text = marti(memory + " --axis dram.policy=fcfs,frfcfs");
+  ASSERT_EQ(text.status, 0) << text.output;
+  for (const char* const name : {"axis", "bandwidth", "energy", "latency", "queue", "rows"}) {
+    const nlohmann::json chart =
+        nlohmann::json::parse(read(out / (std::string("memory_") + name + ".vl.json")));
+    EXPECT_FALSE(chart["data"]["values"].empty()) << name;
+  }
+  for (const nlohmann::json& row :
+       nlohmann::json::parse(read(out / "memory_latency.vl.json"))["data"]["values"]) {
+    EXPECT_GE(row["at_most"], row["at_least"]);
+    EXPECT_LE(row["share"], 1.0);
+  }
+  const Outcome report = marti("report " + quoted(out));
+  ASSERT_EQ(report.status, 0) << report.output;
+  EXPECT_TRUE(says(text, "answer        " + report.output.substr(0, report.output.find('\n'))))
+      << text.output;
+  expect_refused("run " + small_run + " -o " + quoted(out), "results.sqlite: is there already");
 }
 
 TEST(MemoryCommand, SaysWhatIsWrongWithATrace) {

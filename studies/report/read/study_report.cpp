@@ -71,7 +71,7 @@ tables::Table read_table(tables::SqliteConnection& connection, const fs::path& f
   info.with({name});
   while (info.next()) {
     tables::Column column{info.text(0), type_of(info.text(1)), "", ""};
-    if (!tables::is_plain_name(column.name) || !seen.insert(column.name).second) {
+    if (!tables::is_plain_name(column.name, true) || !seen.insert(column.name).second) {
       throw sim::UserError(file.string() + ": table " + name + ": its columns are not those of a study" +
                            std::string(remedy));
     }
@@ -169,7 +169,7 @@ ReportData read_study_report(const fs::path& directory) {
       take_settings(table, report);
       continue;
     }
-    if (name == "host_error_answer" && has_columns(table, std::array<std::string_view, 1>{"answer"})) {
+    if (name.ends_with("_answer") && has_columns(table, std::array<std::string_view, 1>{"answer"})) {
       for (std::size_t row = 0; row < table.rows().size(); ++row) {
         if (const auto* answer = std::get_if<std::string>(&table.at(row, "answer"))) {
           report.answer.push_back(*answer);
