@@ -11,6 +11,7 @@ import pathlib
 import pickle
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -356,6 +357,48 @@ class Sweeps(unittest.TestCase):
         self.assertTrue(os.path.isdir(place))
         del sweep
         self.assertFalse(os.path.exists(place))
+
+    def test_intervals_are_rows_of_the_store(self):
+        settings = {**SMALL, "record.interval": "100us", "energy.preset": "45nm"}
+        axes = {"machine.nodes": [2, 5], "memory.model": ["fixed", "dram"], "cache.line": [64]}
+        with tempfile.TemporaryDirectory() as directory:
+            with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+                sweep = marti.sweep(self.config, axes, settings, directory=directory, executor=pool, shares=2)
+            store = sqlite3.connect(pathlib.Path(directory, "results.sqlite"))
+            store.row_factory = sqlite3.Row
+            counted = [row[1] for row in store.execute("PRAGMA table_info(intervals)")][4:]
+            for _, given in sweep.points[sweep.axes].iterrows():
+                own = {key: str(value) for key, value in given.items()}
+                row = store.execute("SELECT * FROM points JOIN results USING (machine) WHERE \"machine.nodes\" = ? AND "
+                                    "\"memory.model\" = ?", (int(given["machine.nodes"]), given["memory.model"])).fetchone()
+                rows = store.execute("SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal", (row["machine"],)).fetchall()
+                self.assertGreater(len(rows), 3)
+                self.assertEqual([each["to_ps"] for each in rows[:-1]], [each["from_ps"] for each in rows[1:]])
+                self.assertEqual(rows[-1]["to_ps"], row["end"])
+                grown = 0
+                for name in counted:
+                    values = [each[name] for each in rows]
+                    if name.startswith("spent_"):
+                        continue
+                    if values[0] is None:
+                        self.assertEqual(set(values), {None}, name)
+                    else:
+                        self.assertEqual(sum(values), row[name], name)
+                        grown += 1
+                self.assertGreater(grown, 30)
+                self.assertEqual(sum(each[name] for each in rows for name in counted if name.startswith("spent_")),
+                                 row["end"] * row["nodes"])
+                alone = marti.run(self.config, {**settings, **own}).json["machine"]["intervals"]
+                shown = store.execute("SELECT f.*, i.* FROM interval_figures f JOIN intervals i USING (machine, ordinal) "
+                                      "WHERE machine = ? ORDER BY ordinal", (row["machine"],)).fetchall()
+                self.assertEqual(alone["count"], len(shown))
+                for name, values in alone["columns"].items():
+                    values = values["values"] if isinstance(values, dict) else values
+                    self.assertEqual([each[name] for each in shown], values, name)
+            without = store.execute("SELECT COUNT(*) FROM results WHERE machine NOT IN (SELECT machine FROM points)")
+            self.assertGreater(without.fetchone()[0], 0)  # machines of one node, that are no points
+            self.assertEqual(store.execute("SELECT COUNT(DISTINCT machine) FROM intervals").fetchone()[0], 4)
+            store.close()
 
     def test_shares_are_merged_and_a_lost_one_is_asked_for_again(self):
         with tempfile.TemporaryDirectory() as directory:

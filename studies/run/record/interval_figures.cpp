@@ -1,6 +1,7 @@
 #include "studies/run/record/interval_figures.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <string>
@@ -9,7 +10,6 @@
 #include "sim/error.h"
 #include "sim/key_error.h"
 #include "sim/units.h"
-#include "studies/figures/derived_figures.h"
 
 namespace marti::studies::run {
 
@@ -33,6 +33,28 @@ bool is_of_intervals(const FigureEntry& derived) {
 }
 
 }  // namespace
+
+std::span<const std::size_t> counted_in_intervals() {
+  static const std::vector<std::size_t> places = [] {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < counted_entries().size(); ++i) {
+      if (adds_up(counted_entries()[i])) {
+        found.push_back(i);
+      }
+    }
+    return found;
+  }();
+  return places;
+}
+
+std::span<const FigureEntry> derived_in_intervals() {
+  static const std::vector<FigureEntry> entries = [] {
+    std::vector<FigureEntry> found;
+    std::ranges::copy_if(figures::derived_figures(), std::back_inserter(found), is_of_intervals);
+    return found;
+  }();
+  return entries;
+}
 
 IntervalFigures::IntervalFigures(const processors::machine::MachineConfig& machine, sim::Ticks length)
     : machine_(machine),
@@ -103,11 +125,32 @@ std::vector<figures::Counts> IntervalFigures::counts_of_each(const figures::Coun
   return rows;
 }
 
-tables::Table IntervalFigures::table(const figures::Counts& whole) const {
+std::vector<IntervalRow> IntervalFigures::rows(const figures::Counts& whole) const {
   const figures::Count nodes = *figures::count_of(whole, "nodes");
   sim::ensure(
       counted_entries()[0].name == "end" && so_far_.size() >= std::max<std::size_t>(states_.size(), 1),
       "an interval was not looked at");
+  const std::vector<bool> grows = growing(whole);
+  std::vector<figures::Counts> counts = counts_of_each(whole, grows);
+  std::vector<IntervalRow> rows(counts.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const sim::Ticks from = length_ * static_cast<sim::Ticks>(row);
+    rows[row] = {from, from + static_cast<sim::Ticks>(*counts[row][0]), states_[row], std::move(counts[row])};
+    for (std::size_t i = 0; i < grows.size(); ++i) {
+      if (!grows[i]) {
+        rows[row].counts[i].reset();
+      }
+    }
+    sim::ensure(std::accumulate(states_[row].begin(), states_[row].end(), sim::Sum{0}) ==
+                    (rows[row].to - from) * nodes,
+                "the states of an interval are all of the nodes' time");
+  }
+  return rows;
+}
+
+tables::Table IntervalFigures::table(const figures::Counts& whole) const {
+  const figures::Count nodes = *figures::count_of(whole, "nodes");
+  const std::vector<IntervalRow> of_each = this->rows(whole);
   const std::vector<bool> grows = growing(whole);
   const std::vector<figures::Counts> rows = counts_of_each(whole, grows);
 
@@ -117,11 +160,7 @@ tables::Table IntervalFigures::table(const figures::Counts& whole) const {
                              "end of the interval: the next one's begin, or that of the frame")};
   std::vector<std::vector<tables::Cell>> cells(rows.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    cells[row] = {length_ * static_cast<sim::Ticks>(row),
-                  length_ * static_cast<sim::Ticks>(row) + static_cast<sim::Ticks>(*rows[row][0])};
-    sim::ensure(
-        std::accumulate(states_[row].begin(), states_[row].end(), sim::Sum{0}) == *rows[row][0] * nodes,
-        "the states of an interval are all of the nodes' time");
+    cells[row] = {of_each[row].from, of_each[row].to};
   }
   const auto add = [&](tables::Column column, const auto& value_of) {
     columns.push_back(std::move(column));
@@ -149,11 +188,10 @@ tables::Table IntervalFigures::table(const figures::Counts& whole) const {
           [&](std::size_t row) { return rows[row][i]; });
     }
   }
-  for (const FigureEntry& entry : figures::derived_figures()) {
+  for (const FigureEntry& entry : derived_in_intervals()) {
     const auto value_in = [&](const auto& counts) { return figures::figure_of({&counts}, entry.name); };
     const auto value_of = [&](std::size_t row) { return value_in(rows[row]); };
-    if (is_of_intervals(entry) &&
-        std::ranges::any_of(rows, [&](const auto& counts) { return value_in(counts).has_value(); })) {
+    if (std::ranges::any_of(rows, [&](const auto& counts) { return value_in(counts).has_value(); })) {
       add(tables::real_column(entry.name, entry.unit, entry.description), value_of);
     }
   }

@@ -5,17 +5,35 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "processors/replay/replay.h"
 #include "processors/walk/observer.h"
 #include "studies/figures/counted_figures.h"
+#include "studies/figures/derived_figures.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::run {
 
 /// No frame is divided into more.
 inline constexpr std::size_t most_intervals = 1000;
+
+/// What a machine did in one interval.
+struct IntervalRow {
+  sim::Ticks from = 0;
+  sim::Ticks to = 0;  ///< the next one's `from`, or the end of the frame
+  /// Time that nodes were in each NodeState; together the interval's length times the nodes.
+  std::array<sim::Sum, processors::walk::node_states> spent{};
+  /// One for each of counted_figures(); only those that grow during the frame have a value.
+  figures::Counts counts;
+  bool operator==(const IntervalRow&) const = default;
+};
+
+/// The places among counted_figures() of those that may grow little by little during a frame.
+[[nodiscard]] std::span<const std::size_t> counted_in_intervals();
+/// The derived figures that say something of an interval.
+[[nodiscard]] std::span<const figures::FigureEntry> derived_in_intervals();
 
 /// Watches a replay, and is told what it has counted. Counts belong to intervals as
 /// processors/replay/replay.h says; times of nodes are exact.
@@ -36,20 +54,21 @@ class IntervalFigures final : public processors::walk::Observer {
   void spent(std::uint32_t node, processors::walk::NodeState state, sim::Ticks from, sim::Ticks to,
              processors::walk::PixelPlace pixel) override;
 
+  /// `whole` are the counts of the finished frame, to which the intervals of each counted figure add up; one
+  /// that is what is left of others (time without requests, branches that are not split) may be below 0 in
+  /// an interval. Throws InternalError unless the states of each interval add up to its length times the
+  /// nodes.
+  [[nodiscard]] std::vector<IntervalRow> rows(const figures::Counts& whole) const;
+
   /// The table "intervals": a row for each interval, with the columns `from_ps` and `to_ps` and then, where
   /// it has values,
   /// - `spent_STATE` and `share_STATE`: the time that nodes were in a NodeState, in ps and of their time
   /// - each counted figure that grows during the frame, under its name
   /// - each derived figure of these, under its name, by the formula of the frame
-  /// `whole` are the counts of the finished frame, to which the intervals of each counted figure add up; one
-  /// that is what is left of others (time without requests, branches that are not split) may be below 0 in
-  /// an interval. Throws InternalError unless the states of each interval add up to its length times the
-  /// nodes.
   [[nodiscard]] tables::Table table(const figures::Counts& whole) const;
 
  private:
-  // Of one interval.
-  using States = std::array<sim::Sum, processors::walk::node_states>;
+  using States = decltype(IntervalRow::spent);
 
   void require(std::size_t intervals) const;
   void counted(const processors::replay::MachineResult& result);

@@ -33,8 +33,8 @@ std::size_t MachineList::enter(ReadPoint& read) {
   if (fresh) {
     const std::size_t timing =
         timing_of_key_.emplace(on_frame(read.timing_digest), timing_of_key_.size()).first->second;
-    machines_.push_back(
-        {std::move(key), frame, timing, read.machine, settings_.share(std::move(read.settings))});
+    machines_.push_back({std::move(key), frame, timing, read.machine,
+                         settings_.share(std::move(read.settings)), read.interval});
     first_point_.push_back(no_point);
   }
   return place->second;

@@ -14,8 +14,9 @@ namespace marti::studies::sweep {
 namespace {
 
 constexpr std::array<std::string_view, 2> single = {"machine.clusters", "machine.nodes"};
-constexpr std::array<std::string_view, 3> counting_keys = {"count.miss_classes", "count.sharing",
-                                                           "count.attribution"};
+constexpr std::string_view interval_key = "record.interval";
+constexpr std::array<std::string_view, 4> counting_keys = {"count.miss_classes", "count.sharing",
+                                                           "count.attribution", interval_key};
 
 std::vector<bool> keys_read(const sim::Config& config) {
   std::vector<bool> used(config.schema().keys().size());
@@ -65,13 +66,18 @@ void set(sim::Config& config, std::string_view key, sim::Value value) {
 }  // namespace
 
 ReadPoint read_point(sim::Config config) {
-  ReadPoint point{std::move(config), {}, {}, {}, {}, {}, {}, {}};
+  ReadPoint point{std::move(config), {}, {}, {}, {}, 0, {}, {}, {}};
   const std::vector<sim::Key>::size_type keys = point.config.schema().keys().size();
   point.frame = keys::read_frame(point.config);
   run::refuse_several_frames(point.config, point.frame.frames);
   point.frame_keys = keys_read(point.config);
   point.machine = keys::read_machine(point.config);
   run::refuse_beyond_memory(point.config, point.frame, point.machine);
+  // Machines without intervals are the same whether or not there are any in their sweep.
+  const std::size_t of_interval = *point.config.schema().find(interval_key);
+  if (std::get<sim::Ticks>(point.config.values_at(of_interval)[0]) > 0) {
+    point.interval = point.config.duration(interval_key);
+  }
 
   Digest frame;
   Digest machine;
@@ -93,7 +99,8 @@ ReadPoint read_point(sim::Config config) {
   }
   point.frame_digest = frame.hex();
   point.machine_digest = machine.hex();
-  point.timing_digest = timing.hex();
+  // What an interval's energy is, is not kept beside what it counts.
+  point.timing_digest = point.interval > 0 ? point.machine_digest : timing.hex();
   return point;
 }
 

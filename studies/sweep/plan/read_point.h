@@ -18,6 +18,7 @@ struct ReadPoint {
       frame_digest;  ///< 32 hexadecimal digits of the frame's keys and values, host_machine.* left out
   std::vector<bool> frame_keys;  ///< for each key of the schema: has the frame read it?
   processors::machine::MachineConfig machine;
+  sim::Ticks interval = 0;                    ///< of record.interval; 0: none
   std::string machine_digest;                 ///< digest of the keys that only the machine has read
   std::string timing_digest;                  ///< digest of what of these decides times and counts
   std::vector<sim::EffectiveValue> settings;  ///< these keys and values, in the order of the schema

@@ -42,6 +42,7 @@ struct SweepMachine {
   std::size_t timing = 0;
   processors::machine::MachineConfig config;
   SharedSettings settings;  ///< the machine's keys only
+  sim::Ticks interval = 0;  ///< of record.interval; 0: none
 };
 
 /// One point of the sweep's axes.

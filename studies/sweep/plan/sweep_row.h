@@ -14,6 +14,7 @@
 #include "studies/figures/counted_figures.h"
 #include "studies/run/frame_figures.h"
 #include "studies/run/functional_run.h"
+#include "studies/run/record/interval_figures.h"
 
 namespace marti::studies::sweep {
 
@@ -33,6 +34,7 @@ struct SweepHistogram {
 struct SweepRow {
   figures::Counts counters;  ///< one for each of counted_figures()
   std::vector<SweepHistogram> histograms;
+  std::vector<run::IntervalRow> intervals{};  ///< with record.interval
   bool operator==(const SweepRow&) const = default;
 };
 

@@ -1,7 +1,15 @@
 #include "studies/sweep/store/store_columns.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "processors/walk/observer.h"
+#include "sim/mapped.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/run/frame_figures.h"
+#include "studies/run/record/interval_figures.h"
 #include "studies/sweep/plan/axis_text.h"
 #include "studies/tables/sqlite_connection.h"
 
@@ -17,6 +25,14 @@ StoreColumn column_of(const std::string& table, const figures::FigureEntry& figu
           std::string(figures::merge_names.at(static_cast<std::size_t>(figure.merge))),
           std::string(figures::better_names.at(static_cast<std::size_t>(figure.better))),
           figure.formula ? figure.formula->text() : std::string()};
+}
+
+// The columns of what nodes did in each interval, under the names that files of intervals have.
+std::vector<StoreColumn> state_columns(const std::string& table, const std::string& kind,
+                                       const std::string& unit, const std::string& description) {
+  return sim::mapped(processors::walk::node_state_names, [&](std::string_view state) {
+    return StoreColumn{table, kind + "_" + std::string(state), unit, description};
+  });
 }
 
 // The figures of the view summary: those by which points are told apart at a glance.
@@ -116,12 +132,66 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
   for (const figures::FigureEntry& figure : run::frame_figures()) {
     all.push_back(column_of("frame_results", figure));
   }
+  append(all, {{"intervals", "machine", "", "a machine with record.interval"},
+               {"intervals", "ordinal", "1", "number of the interval, from 0"},
+               {"intervals", "from_ps", "ps", "begin of the interval"},
+               {"intervals", "to_ps", "ps", "its end: the next one's begin, or that of the frame"}});
+  append(all, state_columns("intervals", "spent", "ps", "time that nodes were in this state"));
+  for (const std::size_t place : run::counted_in_intervals()) {
+    all.push_back(column_of("intervals", figures::counted_figures()[place]));
+  }
+  append(all, {{"interval_figures", "machine", "", "a machine with record.interval"},
+               {"interval_figures", "ordinal", "1", "number of the interval, from 0"},
+               {"interval_figures", "from_ps", "ps", "begin of the interval"},
+               {"interval_figures", "to_ps", "ps", "its end"}});
+  append(all,
+         state_columns("interval_figures", "share", "fraction", "share of the nodes' time in this state"));
+  for (const figures::FigureEntry& figure : run::derived_in_intervals()) {
+    all.push_back(column_of("interval_figures", figure));
+  }
   append(all, point_columns("points", axes));
   append(all, point_columns("summary", axes));
   for (const figures::FigureEntry& figure : summary_figures()) {
     all.push_back(column_of("summary", figure));
   }
   return all;
+}
+
+std::string intervals_sql() {
+  std::string table =
+      "CREATE TABLE intervals (machine INTEGER NOT NULL, ordinal INTEGER NOT NULL, from_ps INTEGER NOT NULL, "
+      "to_ps INTEGER NOT NULL";
+  std::string view =
+      "CREATE VIEW interval_figures AS SELECT r.machine AS machine, r.ordinal AS ordinal, "
+      "r.from_ps AS from_ps, r.to_ps AS to_ps";
+  for (const std::string_view state : processors::walk::node_state_names) {
+    table += fmt::format(", spent_{} INTEGER NOT NULL", state);
+    view +=
+        fmt::format(", CAST(r.spent_{0} AS REAL) / (r.nodes * (r.to_ps - r.from_ps)) AS share_{0}", state);
+  }
+  for (const figures::FigureEntry& figure : run::derived_in_intervals()) {
+    view += ", " + figure.formula->sql() + " AS " + tables::sql_name(figure.name);
+  }
+  // What does not grow during the frame and is a sum is so of the machine all the time: links, banks.
+  const auto places = run::counted_in_intervals();
+  std::string own;
+  for (std::size_t i = 0; i < figures::counted_figures().size(); ++i) {
+    const std::string name = tables::sql_name(figures::counted_figures()[i].name);
+    if (std::ranges::binary_search(places, i)) {
+      table += ", " + name + " INTEGER";
+      own += fmt::format(", COALESCE(i.{0}, w.{0}) AS {0}", name);
+    } else if (name == "\"nodes\"" || name == "\"clusters\"") {
+      own += fmt::format(", w.{0} AS {0}", name);
+    } else {
+      own += (name == "\"end\"" ? ", i.to_ps - i.from_ps AS " : ", NULL AS ") + name;
+    }
+  }
+  for (const std::string_view state : processors::walk::node_state_names) {
+    own += fmt::format(", i.spent_{0} AS spent_{0}", state);
+  }
+  return table + ", PRIMARY KEY (machine, ordinal)) WITHOUT ROWID; " + view +
+         " FROM (SELECT i.machine AS machine, i.ordinal AS ordinal, i.from_ps AS from_ps, i.to_ps AS to_ps" +
+         own + " FROM intervals i JOIN results w ON w.machine = i.machine) r";
 }
 
 std::string summary_view(std::span<const std::string> axes) {

@@ -23,4 +23,7 @@ struct StoreColumn {
 /// The SQL that makes the view `summary`: points with what follows from their counters.
 [[nodiscard]] std::string summary_view(std::span<const std::string> axes);
 
+/// The SQL that makes the table `intervals` and the view `interval_figures`.
+[[nodiscard]] std::string intervals_sql();
+
 }  // namespace marti::studies::sweep

@@ -45,6 +45,9 @@ figures::Counts counters_at(const tables::SqliteStatement& row, const std::vecto
 
 const tables::Cell no_checksum_yet;
 
+// In the table of intervals.
+constexpr std::size_t first_interval_counter = 4 + processors::walk::node_states;
+
 // Whether the bounds of a bucket are those that a log-scaled histogram gives it.
 bool is_usual(const SweepHistogram::Bucket& bucket) {
   const std::size_t number = sim::LogHistogram::bucket_of(bucket.lowest);
@@ -58,6 +61,8 @@ RowWriter::RowWriter(tables::SqliteConnection& connection)
     : result_(connection,
               tables::insert_sql("results", figures::counted_figures().size() + first_result_counter)),
       bucket_(connection, tables::insert_sql("wait_buckets", 5)),
+      interval_(connection,
+                tables::insert_sql("intervals", first_interval_counter + run::counted_in_intervals().size())),
       frame_(connection,
              tables::insert_sql("frame_results", run::frame_figures().size() + first_frame_counter)),
       note_(connection, tables::insert_sql("frame_notes", 3)),
@@ -78,6 +83,15 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
       const auto highest = is_usual(bucket) ? std::nullopt : std::optional(bucket.highest);
       bucket_.run({machine, name - names.begin(), bucket.lowest, highest, bucket.count});
     }
+  }
+  for (std::size_t ordinal = 0; ordinal < row.intervals.size(); ++ordinal) {
+    const run::IntervalRow& interval = row.intervals[ordinal];
+    std::vector<tables::Cell> own = {machine, ordinal, interval.from, interval.to};
+    own.insert(own.end(), interval.spent.begin(), interval.spent.end());
+    for (const std::size_t place : run::counted_in_intervals()) {
+      own.emplace_back(interval.counts[place]);
+    }
+    interval_.run(own);
   }
   machine_sums_.seal(machine);
 }
@@ -102,9 +116,11 @@ RowReader::RowReader(tables::SqliteConnection& connection)
                "SELECT w.name, h.lowest, COALESCE(h.highest, b.highest), h.count FROM wait_buckets h "
                "JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest "
                "WHERE h.machine = ? ORDER BY h.wait, h.lowest"),
+      intervals_(connection, "SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal"),
       frame_(connection, "SELECT * FROM frame_results WHERE frame = ?"),
       notes_(connection, "SELECT note FROM frame_notes WHERE frame = ? ORDER BY ordinal"),
       result_places_(places_of(result_, figures::counted_figures())),
+      interval_places_(places_of(intervals_, figures::counted_figures())),
       frame_places_(places_of(frame_, run::frame_figures())) {}
 
 std::optional<SweepRow> RowReader::find_machine(std::int64_t machine) {
@@ -121,6 +137,18 @@ std::optional<SweepRow> RowReader::find_machine(std::int64_t machine) {
       row.histograms.push_back({what, {}});
     }
     row.histograms.back().buckets.push_back({buckets_.integer(1), buckets_.integer(2), buckets_.integer(3)});
+  }
+  intervals_.with({machine});
+  while (intervals_.next()) {
+    run::IntervalRow& interval = row.intervals.emplace_back();
+    interval.from = intervals_.integer(2);
+    interval.to = intervals_.integer(3);
+    for (std::size_t state = 0; state < interval.spent.size(); ++state) {
+      interval.spent[state] =
+          count_at(intervals_, static_cast<int>(first_interval_counter - interval.spent.size() + state))
+              .value_or(0);
+    }
+    interval.counts = counters_at(intervals_, interval_places_);
   }
   return row;
 }

@@ -22,6 +22,7 @@ class RowWriter {
  private:
   tables::SqliteStatement result_;
   tables::SqliteStatement bucket_;
+  tables::SqliteStatement interval_;
   tables::SqliteStatement frame_;
   tables::SqliteStatement note_;
   RowSums machine_sums_;
@@ -40,9 +41,11 @@ class RowReader {
  private:
   tables::SqliteStatement result_;
   tables::SqliteStatement buckets_;
+  tables::SqliteStatement intervals_;
   tables::SqliteStatement frame_;
   tables::SqliteStatement notes_;
   std::vector<int> result_places_;  // of each counter: its column; -1: none
+  std::vector<int> interval_places_;
   std::vector<int> frame_places_;
 };
 

@@ -20,7 +20,7 @@ namespace marti::studies::sweep {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 5;                // up to 4: without a question
+constexpr std::int64_t format = 6;                // up to 5: without intervals
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -191,6 +191,7 @@ void create_store(tables::SqliteConnection& connection) {
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
       "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
       counters_sql(run::frame_figures()) + ")");
+  connection.execute(intervals_sql());
   tables::SqliteStatement store(connection, tables::insert_sql("store", 2));
   store.run({"format", std::to_string(format)});
   store.run({"version", version});

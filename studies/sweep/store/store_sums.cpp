@@ -72,10 +72,14 @@ RowSums::RowSums(tables::SqliteConnection& connection, const ResultTable& table)
     : connection_(connection),
       table_(table),
       row_(connection, fmt::format("SELECT * FROM {} WHERE {} = ?", table.name, table.id)),
-      parts_(connection, std::string(table.parts)),
       seal_(connection, fmt::format("UPDATE {} SET checksum = ? WHERE {} = ?", table.name, table.id)) {
   for (int i = 0; i < row_.columns(); ++i) {
     checksum_ = row_.column_name(i) == "checksum" ? i : checksum_;
+  }
+  for (const std::string_view sql : table.parts) {
+    if (!sql.empty()) {
+      parts_.emplace_back(connection, std::string(sql));
+    }
   }
 }
 
@@ -88,7 +92,9 @@ tables::Cell RowSums::sum_of(const tables::SqliteStatement& row) {
   }
   Digest digest;
   digest.add(bytes.take());
-  add_rows(digest, parts_.with({row.cell(0)}));
+  for (tables::SqliteStatement& part : parts_) {
+    add_rows(digest, part.with({row.cell(0)}));
+  }
   return static_cast<std::int64_t>(digest.folded());
 }
 

@@ -1,29 +1,32 @@
 // Checksums of what a store holds, to detect damage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::sweep {
 
-/// A table of results, and what belongs to each of its rows: the histograms of a machine, the notes of a
-/// frame.
+/// A table of results, and what belongs to each of its rows: the histograms and intervals of a machine, the
+/// notes of a frame.
 struct ResultTable {
   std::string_view name;
-  std::string_view id;     ///< its first column
-  std::string_view parts;  ///< the SQL that selects, for an id, what belongs to its row
+  std::string_view id;  ///< its first column
+  /// The SQL that selects, for an id, what belongs to its row; empty: nothing more does.
+  std::array<std::string_view, 2> parts;
 };
 inline constexpr ResultTable machine_results = {
-    "results", "machine",
-    "SELECT wait, lowest, highest, count FROM wait_buckets WHERE machine = ? ORDER BY wait, lowest"};
+    "results",
+    "machine",
+    {"SELECT wait, lowest, highest, count FROM wait_buckets WHERE machine = ? ORDER BY wait, lowest",
+     "SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal"}};
 inline constexpr ResultTable frame_results = {
-    "frame_results", "frame", "SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"};
-/// Nothing belongs to what would help a machine.
-inline constexpr ResultTable advice_rows = {"advice", "machine",
-                                            "SELECT 0 FROM advice WHERE machine = ? AND 0"};
+    "frame_results", "frame", {"SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"}};
+inline constexpr ResultTable advice_rows = {"advice", "machine", {}};
 
 /// The checksums of one table of results. Each covers the values of a row as they stand in the store, with
 /// their types, and what belongs to the row. So a program that has other counters can check a store, too.
@@ -42,7 +45,7 @@ class RowSums {
   tables::SqliteConnection& connection_;
   ResultTable table_;
   tables::SqliteStatement row_;
-  tables::SqliteStatement parts_;
+  std::vector<tables::SqliteStatement> parts_;
   tables::SqliteStatement seal_;
   int checksum_ = -1;  // the column that holds it
 };

@@ -14,7 +14,8 @@ std::vector<MachineBatch> batches_of(const SweepPlan& plan, std::span<const std:
   std::map<std::pair<std::size_t, std::string>, std::size_t> known;
   for (const std::size_t number : machines) {
     const SweepMachine& machine = plan.machines[number];
-    const std::string key = StrippedLog::key_of(machine.config);
+    // What is counted by intervals needs every step in its place.
+    const std::string key = machine.interval > 0 ? std::string() : StrippedLog::key_of(machine.config);
     const auto [entry, is_new] = known.try_emplace({machine.frame, key}, batches.size());
     if (is_new) {
       batches.push_back({machine.frame, key, {}, {}});

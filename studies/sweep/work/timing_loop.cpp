@@ -175,18 +175,27 @@ class Loop {
       const SweepMachine& machine = plan_.machines[number];
       const std::int64_t begin = sim::thread_cpu_nanoseconds();
       SweepRow row;
+      std::optional<run::IntervalFigures> intervals;
       try {
         row = sim::with_places(all_of(machine.settings), plan_.file, [&] {
           if (result) {
             processors::replay::work_out_energy(*ready.frame->log, machine.config, *result);
           } else {
-            result = replay(ready, machine.config, plan_.frames[machine.frame].config.meter);
+            if (machine.interval > 0) {
+              intervals.emplace(machine.config, machine.interval);
+            }
+            result = replay(ready, machine.config, plan_.frames[machine.frame].config.meter,
+                            intervals ? &*intervals : nullptr);
           }
-          return sweep_row(machine.config, *result);
+          SweepRow timed = sweep_row(machine.config, *result);
+          if (intervals) {
+            timed.intervals = intervals->rows(timed.counters);
+          }
+          return timed;
         });
       } catch (const sim::UserError& error) {
-        throw sim::UserError(std::string(error.what()) + " (the machine with " +
-                             sim::shown(name_of(machine)) + ")");
+        throw sim::UserError(
+            std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) + ")", error);
       } catch (const std::bad_alloc&) {
         throw sim::UserError("the computer ran out of memory (while it timed the machine with " +
                              sim::shown(name_of(machine)) + ")");
@@ -197,10 +206,12 @@ class Loop {
 
   processors::replay::MachineResult replay(const ReadyBatch& ready,
                                            const processors::machine::MachineConfig& machine,
-                                           sim::WorkMeter* meter) {
+                                           sim::WorkMeter* meter, run::IntervalFigures* intervals) {
     const processors::program::WorkLog& log = *ready.frame->log;
     processors::replay::ReplayOptions options;
     options.meter = meter;
+    options.observer = intervals;
+    options.intervals = intervals == nullptr ? nullptr : &intervals->asked();
     if (!ready.stripped.empty()) {
       const auto ways = std::ranges::find(ready.batch->ways, StrippedLog::ways_of(machine));
       options.stripped = ready.stripped[static_cast<std::size_t>(ways - ready.batch->ways.begin())].get();

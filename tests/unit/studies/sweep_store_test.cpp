@@ -219,8 +219,8 @@ TEST(SweepStore, RefusesOtherFormatsAndVersions) {
     EXPECT_TRUE(sim::read_file(other, std::int64_t{1} << 24U) == before) << sql << ": the store was touched";
   };
   refused_after("PRAGMA application_id = 7", "not the store of a sweep");
-  refused_after("PRAGMA user_version = 6", "format 6");
-  refused_after("PRAGMA user_version = 3", "format 3, but this program reads format 5");
+  refused_after("PRAGMA user_version = 7", "format 7");
+  refused_after("PRAGMA user_version = 3", "format 3, but this program reads format 6");
   refused_after("UPDATE store SET value = '0.0.1' WHERE what = 'version'", "version 0.0.1");
   refused_after("UPDATE store SET value = '0.0.1' WHERE what = 'version'", std::string(version));
   refused_after("UPDATE store SET value = 'marti 0.1.0 0' WHERE what = 'build'", "another build");
