@@ -32,19 +32,27 @@ FileSet read_file_set(const fs::path& file) {
   if (!json.is_object() || !json.contains("files") || !json["files"].is_object()) {
     return {};
   }
-  const nlohmann::ordered_json files = std::move(json["files"]);
-  json.erase("files");
-  FileSet set{json.dump(-1, ' ', false, utf8_only), {}};
-  for (const auto& [name, hash] : files.items()) {
-    if (hash.is_string() && !name.empty() && fs::path(name).filename() == name) {
-      set.files[name] = hash.get<std::string>();
+  const auto taken = [&json](const char* member) {
+    std::map<std::string, std::string> by_name;
+    const nlohmann::ordered_json texts = json.value(member, nlohmann::ordered_json::object());
+    json.erase(member);
+    for (const auto& [name, text] : texts.items()) {
+      if (text.is_string() && !name.empty() && fs::path(name).filename() == name) {
+        by_name[name] = text.get<std::string>();
+      }
     }
-  }
+    return by_name;
+  };
+  FileSet set{{}, taken("files"), taken("notes")};
+  set.of = json.dump(-1, ' ', false, utf8_only);
   return set;
 }
 
 std::string text_of(const FileSet& set) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(set.of);
+  if (!set.notes.empty()) {
+    json["notes"] = set.notes;
+  }
   json["files"] = set.files;
   return json.dump(2, ' ', false, utf8_only) + "\n";
 }

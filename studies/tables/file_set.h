@@ -10,14 +10,15 @@ namespace marti::studies::tables {
 
 struct FileSet {
   std::string of = "{}";  ///< what the files are of: a JSON object, as ordered_json::dump()
-  std::map<std::string, std::string> files;  ///< SHA-256 (64 hexadecimal digits) by name
+  std::map<std::string, std::string> files;    ///< SHA-256 (64 hexadecimal digits) by name
+  std::map<std::string, std::string> notes{};  ///< what is in files, by their names, for people and programs
 };
 
 /// The set that a JSON file names; empty if there is none that can be read. Names with a directory in them
 /// are ignored.
 [[nodiscard]] FileSet read_file_set(const std::filesystem::path& file);
 
-/// The JSON: the members of `of`, then "files".
+/// The JSON: the members of `of`, then "notes" if there are any, and "files".
 [[nodiscard]] std::string text_of(const FileSet& set);
 
 /// Whether a file of the directory is in the set and as the set says.

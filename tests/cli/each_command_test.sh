@@ -29,6 +29,12 @@ marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 
 marti trace -- "$source/configs/marti.toml" "${small[@]}" --set machine.nodes=2 --format csv -o traces
 marti memory -- "$source/configs/marti.toml" traces/requests.csv --set machine.nodes=2 -o memory
 marti report -- memory
+cp "$source"/tests/fuzz/rays/*.npy .
+for rays in any closest; do
+  marti run -- "$source/configs/marti.toml" --set scene.source=tetra:3 --set image.integrator=rays \
+    --set "image.rays=$PWD/$rays.npy" -o rays
+  [ -s rays/hits.npy ] || { echo "a run of given rays says nothing of what they hit" >&2 && exit 1; }
+done
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep
 marti sweep -- "$source/configs/sweep-small.toml" "${small[@]}" -o sweep --plan
 marti compare -- run sweep

@@ -532,6 +532,10 @@ TEST(TraceCommand, ADirectoryHoldsTheTracesOfOneMachine) {
   auto named = nlohmann::json::parse(read(out / "trace.json"));
   EXPECT_EQ(named["settings"]["machine.scheme"], "\"image\"");
   EXPECT_EQ(named["files"].size(), 3U);
+  EXPECT_EQ(named["notes"]["node-00001.din"], "nodes 1");
+  ASSERT_EQ(marti(trace("--nodes 0-2,3 --format csv --set machine.nodes=16")).status, 0);
+  named = nlohmann::json::parse(read(out / "trace.json"));
+  EXPECT_EQ(named["notes"]["requests.csv"], "nodes 0-3");
   ASSERT_EQ(marti(trace("--nodes 2 --set scene.source=tetra:1")).status, 0);
   EXPECT_EQ(names_in(out), (Names{"node-00002.din", "trace.json"}));
 

@@ -9,9 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/given_rays.h"
 #include "scenes/open.h"
 #include "scenes/texture.h"
 #include "sim/error.h"
+#include "sim/memory_budget.h"
 #include "target.h"
 #include "tests/support/temporary_directory.h"
 
@@ -159,6 +161,25 @@ void try_ply(std::span<const std::uint8_t> bytes) {
 void try_pbrt(std::span<const std::uint8_t> bytes) {
   write("fuzz.pbrt", bytes);
   try_file("fuzz.pbrt");
+}
+
+void try_rays(std::span<const std::uint8_t> bytes) {
+  write("fuzz.npy", bytes);
+  const std::filesystem::path file = folder() / "fuzz.npy";
+  try {
+    const std::uint64_t counted = scenes::count_rays(file);
+    const scenes::GivenRays given = scenes::read_rays(file, sim::MemoryBudget(1U << 24U));
+    promise(counted > 0 && given.rays.size() == counted, "number of rays");
+    promise(given.any.empty() || given.any.size() == counted, "number of kinds of rays");
+    for (const scenes::GivenRay& ray : given.rays) {
+      promise(finite(ray.origin) && finite(ray.direction) && ray.direction != glm::dvec3(0.0), "a ray");
+      promise(ray.least >= 0.0 && std::isfinite(ray.least) && ray.greatest >= ray.least, "a ray's distances");
+    }
+  } catch (const sim::UserError& error) {
+    promise(error.place().key == sim::memory_limit_key ||
+                std::string_view(error.what()).starts_with(folder().string()),
+            "a message without the path: " + std::string(error.what()));
+  }
 }
 
 }  // namespace marti::fuzz

@@ -118,6 +118,10 @@ TEST(FuzzSeeds, PbrtFiles) {
   try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/pbrt", {".pbrt"}), "pbrt"), try_pbrt);
 }
 
+TEST(FuzzSeeds, ArraysOfRays) {
+  try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/rays", {".npy"}), "rays"), try_rays);
+}
+
 TEST(FuzzSeeds, PlyFiles) {
   try_seeds(with_findings(files_in(MARTI_SOURCE "/tests/fuzz/ply", {".ply"}), "ply"), try_ply);
 }

@@ -38,4 +38,7 @@ void try_ply(std::span<const std::uint8_t> bytes);
 /// The bytes as a pbrt file.
 void try_pbrt(std::span<const std::uint8_t> bytes);
 
+/// The bytes as an array of NumPy with rays. What is read must be rays by scenes/given_rays.h.
+void try_rays(std::span<const std::uint8_t> bytes);
+
 }  // namespace marti::fuzz

@@ -57,4 +57,18 @@ std::vector<std::uint32_t> parse_nodes(std::string_view text, std::uint32_t node
   return list;
 }
 
+std::string text_of_nodes(std::span<const std::uint32_t> nodes) {
+  std::string text;
+  for (std::size_t begin = 0; begin < nodes.size();) {
+    std::size_t end = begin + 1;
+    while (end < nodes.size() && nodes[end] == nodes[end - 1] + 1) {
+      ++end;
+    }
+    text += (text.empty() ? "" : ",") + std::to_string(nodes[begin]);
+    text += end - begin > 1 ? "-" + std::to_string(nodes[end - 1]) : "";
+    begin = end;
+  }
+  return text;
+}
+
 }  // namespace marti::studies::run

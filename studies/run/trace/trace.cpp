@@ -51,6 +51,7 @@ struct TraceFile {
 
   std::filesystem::path file;
   TextStream stream;
+  std::vector<std::uint32_t> nodes;  // whose requests or references it has
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
   std::uint64_t bytes = 0;
@@ -90,6 +91,7 @@ class TraceWriter final : public processors::walk::Observer {
         files_.push_back(std::make_unique<TraceFile>(name));
         files_.back()->write(format.head(references), left_);
       }
+      files_.back()->nodes.push_back(node);
       file_of_[node] = files_.back().get();
     }
   }
@@ -241,11 +243,16 @@ std::string write_traces(sim::Config& config, const TraceOptions& options,
   for (const auto& [name, hash] : earlier.files) {
     if (earlier.of == now.of && tables::is_there(directory / name)) {
       now.files[name] = hash;
+      if (const auto note = earlier.notes.find(name); note != earlier.notes.end()) {
+        now.notes[name] = note->second;
+      }
     }
   }
   std::string text;
   for (const std::unique_ptr<TraceFile>& file : files) {
-    now.files[file->file.filename().string()] = sim::sha256_of_file(file->stream.temporary());
+    const std::string name = file->file.filename().string();
+    now.files[name] = sim::sha256_of_file(file->stream.temporary());
+    now.notes[name] = "nodes " + text_of_nodes(file->nodes);
     text +=
         fmt::format("wrote {}: {}, {}, {}\n", file->file.string(), tables::counted(file->reads, "read"),
                     tables::counted(file->writes, "write"), tables::bytes(static_cast<double>(file->bytes)));
