@@ -143,7 +143,9 @@ struct Lost {
   std::uint64_t blocked = 0;  ///< of these
 };
 
-Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats, std::uint32_t side = 48,
+constexpr std::uint32_t usual_side = marti::test::cases(48U);
+
+Lost lost_in(const scenes::Scene& scene, Integrator integrator, bool floats, std::uint32_t side = usual_side,
              const char* structure = "bvh") {
   RenderOptions options{.width = side, .height = side, .max_depth = 12};
   options.integrator = integrator;
@@ -187,7 +189,7 @@ TEST_P(ClosedScenes, NoRayLeavesAndNoLightIsHidden) {
             continue;  // a float's spacing there is a sixteenth of the body
           }
           const Lost lost = lost_in(scene, integrator, floats);
-          EXPECT_GT(lost.shadows, 1000U);
+          EXPECT_GT(lost.shadows, usual_side * usual_side / 3);
           EXPECT_EQ(lost.escaped, 0U)
               << body << " at " << far << " of " << lost.rays << (floats ? ", floats" : "");
           EXPECT_EQ(lost.blocked, 0U)
@@ -244,7 +246,8 @@ TEST(ClosedScenes, AreClosedInFloatsWhereTrianglesAreHighEnough) {
             if (floats && structure != std::string("bvh") && marti::test::stride(0, 1) == 0) {
               continue;  // cells are walked slowly in floats
             }
-            const Lost lost = lost_in(body_of(sphere, center, size), integrator, floats, 24, structure);
+            const Lost lost =
+                lost_in(body_of(sphere, center, size), integrator, floats, usual_side / 2, structure);
             EXPECT_EQ(lost.escaped + lost.blocked, 0U) << (sphere ? "sphere" : "cube") << " at " << far
                                                        << " in " << structure << (floats ? ", floats" : "");
           }
