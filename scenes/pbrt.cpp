@@ -44,6 +44,7 @@ constexpr std::array<std::string_view, 5> rendering = {"Sampler", "Integrator", 
 
 constexpr std::size_t most_states = 1024;
 constexpr double largest_light = 1e12;
+constexpr std::uint64_t bytes_of_name = 512;  // of what has a name, at least
 
 /// What a shape has that is not its own.
 struct State {
@@ -51,6 +52,7 @@ struct State {
   std::size_t material = 0;
   glm::dvec3 emission{0.0};
   bool reversed = false;
+  bool at_end = false;  // transforms are those at the end of a motion, which is left out
 };
 
 /// The geometry between ObjectBegin and ObjectEnd, in the coordinates of the world.
@@ -81,7 +83,7 @@ class Reader {
   void statement(const std::string& name) {
     if (is_transform(name)) {
       const glm::dmat4 after = transform_by(name, text_, state_.transform);
-      (moves_ ? moved_ : state_.transform) = after;
+      state_.transform = state_.at_end ? state_.transform : after;
     } else if (name == "AttributeBegin" || name == "TransformBegin") {
       if (states_.size() == most_states) {
         text_.fail("more than " + std::to_string(most_states) +
@@ -102,12 +104,17 @@ class Reader {
     } else if (name == "ReverseOrientation") {
       state_.reversed = !state_.reversed;
     } else if (name == "CoordinateSystem") {
+      file_.take_memory(bytes_of_name, "its names take");
       named_transforms_[text_.text()] = state_.transform;
     } else if (name == "CoordSysTransform") {
       choose_transform(text_.text());
     } else if (name == "ActiveTransform") {
-      moves_ = text_.word() == "EndTime";
-      left_out_.features["motions"] += moves_ ? 1U : 0U;
+      const std::string when = text_.word();
+      if (when != "All" && when != "StartTime" && when != "EndTime") {
+        text_.fail("ActiveTransform is All, StartTime or EndTime, not " + in_quotes(when));
+      }
+      state_.at_end = when == "EndTime";
+      left_out_.features["motions"] += state_.at_end ? 1U : 0U;
     } else if (!object_statement(name) && !material_statement(name)) {
       other_statement(name);
     }
@@ -118,7 +125,7 @@ class Reader {
     if (found == named_transforms_.end()) {
       text_.fail("there is no coordinate system " + in_quotes(name) + " before it");
     }
-    state_.transform = found->second;
+    state_.transform = state_.at_end ? state_.transform : found->second;
   }
 
   bool object_statement(const std::string& name) {
@@ -127,6 +134,7 @@ class Reader {
         text_.fail("an object lies in another one");
       }
       states_.push_back(state_);
+      file_.take_memory(bytes_of_name + sizeof(Object), "its names take");
       object_ = &objects_[text_.text()];
       *object_ = {};
     } else if (name == "ObjectEnd") {
@@ -227,6 +235,9 @@ class Reader {
       for (Triangle& triangle : shape->triangles) {
         std::swap(triangle.vertex[1], triangle.vertex[2]);
       }
+      for (glm::dvec3& normal : shape->normals) {
+        normal = -normal;
+      }
     }
     add(*shape, state_.transform, *material);
   }
@@ -322,6 +333,9 @@ class Reader {
                         parameters.place() + ": the camera " + in_quotes(kind) + " is not supported");
       return;
     }
+    for (const char* const window : {"screenwindow", "frameaspectratio"}) {
+      left_out_.features["windows of cameras"] += parameters.find(window) != nullptr ? 1U : 0U;
+    }
     const Placement placement = placement_of(to_world, text_);
     camera_ = View{placement, parameters.number("fov", 90.0, 1e-3, 179.9)};
   }
@@ -381,8 +395,6 @@ class Reader {
   PbrtMaterials materials_;
   State state_;
   std::vector<State> states_;
-  bool moves_ = false;  // transforms are those at the end of a motion, which is left out
-  glm::dmat4 moved_{1.0};
   std::map<std::string, glm::dmat4> named_transforms_;
   std::map<std::string, Object> objects_;
   Object* object_ = nullptr;  // that is being read

@@ -82,6 +82,9 @@ glm::dvec3 spectrum(const Parameters& parameters, const Parameter& given) {
       parameters.fail("the wavelengths of the spectrum " + in_quotes(given.name) + " do not rise");
     }
   }
+  if (!std::all_of(points.begin(), points.end(), [](double value) { return std::isfinite(value); })) {
+    parameters.fail("the spectrum " + in_quotes(given.name) + " has a number that is not finite");
+  }
   return {mean(points, 600.0, 700.0), mean(points, 500.0, 600.0), mean(points, 400.0, 500.0)};
 }
 

@@ -19,6 +19,8 @@ namespace {
 // Textures that refer to two others, and materials that are mixed of others.
 constexpr int most_nested = 8;
 
+constexpr std::uint64_t bytes_of_entry = 256;  // of a list of names, beside the name
+
 constexpr std::array<std::string_view, 4> matt = {"diffuse", "matte", "diffusetransmission", "translucent"};
 constexpr std::array<std::string_view, 4> coated = {"coateddiffuse", "plastic", "substrate", "uber"};
 constexpr std::array<std::string_view, 4> glassy = {"dielectric", "thindielectric", "roughdielectric",
@@ -46,12 +48,14 @@ PbrtMaterials::PbrtMaterials(const SourceFile& file, Text& text, const ImageDeco
 }
 
 std::size_t PbrtMaterials::add(std::string type, Parameters parameters) {
+  file_.take_memory(2 * (sizeof(Known) + 2 * type.size()) + parameters.bytes(), "its materials take");
   known_.push_back({type, std::move(type), std::move(parameters), {}});
   return known_.size() - 1;
 }
 
 void PbrtMaterials::add_named(const std::string& name, Parameters parameters) {
   const std::string type = parameters.text("type");
+  file_.take_memory(bytes_of_entry + 2 * name.size(), "its materials take");
   by_name_[name] = add(type, std::move(parameters));
   known_.back().name = name;
 }
@@ -65,26 +69,27 @@ std::size_t PbrtMaterials::named(const std::string& name) const {
 }
 
 void PbrtMaterials::add_texture(std::string name, std::string kind, Parameters parameters) {
+  file_.take_memory(bytes_of_entry + name.size() + kind.size() + parameters.bytes(), "its textures take");
   textures_.insert_or_assign(std::move(name), KnownTexture{std::move(kind), std::move(parameters)});
 }
 
 std::optional<std::uint32_t> PbrtMaterials::in_scene(std::size_t material, const glm::dvec3& emission) {
   Known& known = known_[material];
-  const auto same = std::find_if(known.in_scene.begin(), known.in_scene.end(),
-                                 [&](const auto& variant) { return variant.first == emission; });
-  if (same != known.in_scene.end()) {
+  const std::array<double, 3> light{emission.x, emission.y, emission.z};
+  if (const auto same = known.in_scene.find(light); same != known.in_scene.end()) {
     return same->second;
   }
   std::optional<Material> made = convert(known, 0);
   if (!made) {
     return std::nullopt;
   }
+  file_.take_memory(2 * (sizeof(Material) + known.name.size()), "its materials take");
   made->name = known.name;
   made->emission = emission;
   used_ += known.in_scene.empty() ? 1U : 0U;
   const auto place = static_cast<std::uint32_t>(scene_.materials.size());
   scene_.materials.push_back(*std::move(made));
-  known.in_scene.emplace_back(emission, place);
+  known.in_scene.emplace(light, place);
   return place;
 }
 

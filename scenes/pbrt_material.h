@@ -7,6 +7,7 @@
 // there is more.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -52,7 +53,7 @@ class PbrtMaterials {
     std::string name;
     std::string type;
     Parameters parameters;
-    std::vector<std::pair<glm::dvec3, std::uint32_t>> in_scene;  // by what it emits
+    std::map<std::array<double, 3>, std::uint32_t> in_scene;  // by what it emits
   };
   struct KnownTexture {
     std::string kind;

@@ -15,6 +15,10 @@ namespace marti::scenes::pbrt {
 
 namespace {
 
+std::optional<double> number_of(std::string_view text) {
+  return sim::parse_number<double>(text.starts_with('+') ? text.substr(1) : text);
+}
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 // Files that include others do so to put geometry and materials aside. Of each that includes another one
@@ -28,6 +32,18 @@ const Parameter* Parameters::find(std::string_view name) const {
   const auto found =
       std::find_if(all_.begin(), all_.end(), [&](const Parameter& p) { return p.name == name; });
   return found == all_.end() ? nullptr : &*found;
+}
+
+std::uint64_t Parameters::bytes() const {
+  std::uint64_t bytes = place_.size();
+  for (const Parameter& parameter : all_) {
+    bytes += 2 * sizeof(Parameter) + parameter.type.size() + parameter.name.size() +
+             parameter.numbers.capacity() * sizeof(double) + parameter.texts.capacity() * sizeof(std::string);
+    for (const std::string& text : parameter.texts) {
+      bytes += text.size();
+    }
+  }
+  return bytes;
 }
 
 const std::vector<double>& Parameters::numbers(std::string_view name, std::size_t each) const {
@@ -190,15 +206,16 @@ std::string Text::word() {
 }
 
 std::vector<double> Text::numbers(std::size_t count) {
-  const bool in_brackets = expect("a number").text == "[";
+  const Token first = expect("a number");
+  const bool in_brackets = !first.quoted && first.text == "[";
   if (in_brackets) {
     take();
   }
   std::vector<double> numbers;
   for (std::size_t i = 0; i < count; ++i) {
     const Token token = expect("a number");
-    const std::optional<double> number = sim::parse_number<double>(token.text);
-    if (!number || !(std::abs(*number) <= largest_coordinate)) {
+    const std::optional<double> number = number_of(token.text);
+    if (token.quoted || !number || !(std::abs(*number) <= largest_coordinate)) {
       fail_here(in_quotes(token.text) + " is no number up to 1e30; the statement takes " +
                 std::to_string(count));
     }
@@ -244,8 +261,11 @@ void Text::read_values(Parameter& parameter) {
     add_value(token, parameter);
     take();
     // The list may grow to twice as many, and is copied once.
-    if (const std::size_t size = parameter.numbers.size(); size >= checked && (size & (size - 1)) == 0) {
-      file_.require_memory(4 * size * sizeof(double), "a list of numbers takes");
+    const std::size_t size = parameter.numbers.size() + parameter.texts.size();
+    if (size >= checked && (size & (size - 1)) == 0) {
+      file_.require_memory(
+          4 * (parameter.numbers.size() * sizeof(double) + parameter.texts.size() * sizeof(std::string)),
+          "a list of values takes");
     }
   }
   take();
@@ -256,7 +276,7 @@ void Text::add_value(const Token& token, Parameter& parameter) {
     parameter.texts.emplace_back(token.text);
     return;
   }
-  const std::optional<double> number = sim::parse_number<double>(token.text);
+  const std::optional<double> number = number_of(token.text);
   if (!number) {
     fail_here(in_quotes(token.text) + " is no value of the parameter " + in_quotes(parameter.name));
   }
@@ -264,6 +284,9 @@ void Text::add_value(const Token& token, Parameter& parameter) {
 }
 
 std::string Text::file(const std::string& name) {
+  if (name.empty()) {
+    fail("the name of a file is missing or empty");
+  }
   const std::string path = access_.directory() + name;
   if (!access_.may_read(path)) {
     fail(!access_.refusal().empty() ? access_.refusal() : "there is no file " + in_quotes(name));
@@ -305,6 +328,11 @@ void Text::include(const std::string& name) {
   std::optional<std::string> bytes = read(name, reason);
   if (!bytes) {
     throw sim::UserError(reason);
+  }
+  included_bytes_ += bytes->size();
+  if (included_bytes_ > file_.options().max_file_bytes) {
+    fail("the files that are included have more than " + std::to_string(file_.options().max_file_bytes) +
+         " bytes");
   }
   open_.push_back({path, std::move(*bytes)});
 }

@@ -35,7 +35,8 @@ class Parameters {
 
   /// The first of this name; nullptr if there is none.
   [[nodiscard]] const Parameter* find(std::string_view name) const;
-  [[nodiscard]] const std::vector<Parameter>& all() const { return all_; }
+  /// Bytes of host memory that they take.
+  [[nodiscard]] std::uint64_t bytes() const;
   /// The numbers of one; none if there is none. Throws UserError when there are not a multiple of `each`.
   [[nodiscard]] const std::vector<double>& numbers(std::string_view name, std::size_t each) const;
   /// One finite number. Throws UserError when it is something else or beyond `lowest` to `highest`.
@@ -63,7 +64,7 @@ class Text {
   [[nodiscard]] std::optional<std::string> next();
   /// Its next argument in quotation marks.
   [[nodiscard]] std::string text();
-  /// Its next argument in quotation marks if the next one is such a one that is no parameter.
+  /// Its next argument if that is in quotation marks.
   [[nodiscard]] std::optional<std::string> text_if_given();
   /// Its next argument without quotation marks.
   [[nodiscard]] std::string word();
@@ -111,6 +112,7 @@ class Text {
   FileAccess access_;
   std::vector<Open> open_;  // the one that is read last, after those that include it
   std::size_t includes_ = 0;
+  std::uint64_t included_bytes_ = 0;
   std::size_t end_ = 0;  // of the token that peek() has found
   std::string place_;
 };

@@ -179,7 +179,8 @@ const ProceduralScene& find_scene(std::string_view name, const std::string& wher
   }
   const std::vector<std::string> names = names_of(registry);
   throw sim::UserError(where + "there is no procedural scene of this name" + sim::did_you_mean(name, names) +
-                       "; known are " + joined(names) + ", and files ending in .gltf, .glb, .obj, .ply or .pbrt");
+                       "; known are " + joined(names) +
+                       ", and files ending in .gltf, .glb, .obj, .ply or .pbrt");
 }
 
 std::uint32_t parse_size(std::string_view text, const ProceduralScene& scene, const std::string& where) {

@@ -33,6 +33,9 @@ DocumentValue parse(std::string_view spec) {
   try {
     const sim::Config config =
         sim::Config::from_text(schema, "scene.source = " + std::string(spec), "the list");
+    if (config.free_section("scene").size() != 1) {
+      throw sim::UserError("something follows the list");
+    }
     DocumentValue value = config.free_section("scene").front().value;
     if (value.table() != nullptr) {
       return {DocumentValue::List{std::move(value)}, 0};
@@ -61,6 +64,11 @@ std::vector<double> numbers_of(const DocumentValue& value, const std::string& en
   }
   for (const DocumentValue& element : *list) {
     if (const auto* const row = element.list()) {
+      constexpr std::size_t columns = 4;
+      if (row->size() != columns) {
+        fail(entry, key + " has rows of " + std::to_string(columns) + " numbers, not of " +
+                        std::to_string(row->size()));
+      }
       for (const DocumentValue& inner : *row) {
         add(inner);
       }

@@ -146,8 +146,8 @@ sim::Config Session::config_with(const Settings& settings) const {
                            sim::did_you_mean(key, schema_.names()));
     }
     if (!is_control(schema_.keys()[*index])) {
-      throw sim::UserError("--set " + key + "=" + value +
-                           ": is not a setting of the machine, which are all that the page can change");
+      throw sim::UserError(sim::Place{"--set " + key + "=" + value, {}, 0, key},
+                           "is not a setting of the machine, which are all that the page can change");
     }
     assignments.push_back(key + "=" + value);
   }

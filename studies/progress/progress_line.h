@@ -19,7 +19,7 @@ namespace marti::studies::progress {
 class ProgressLine {
  public:
   struct Options {
-    std::FILE* out = stderr;                ///< the terminal
+    std::FILE* out = stderr;               ///< the terminal
     std::chrono::milliseconds first{200};  ///< what is done by then needs no line
     std::chrono::milliseconds between{200};
   };
@@ -54,8 +54,8 @@ class ProgressLine {
 /// The width of bars on terminals.
 inline constexpr std::size_t usual_bar = 24;
 
-/// Shows the meter while it lives, if standard error is a terminal and the work takes more than a fifth of a second.
-/// `meter` must outlive it.
+/// Shows the meter while it lives, if standard error is a terminal and the work takes more than a fifth of a
+/// second. `meter` must outlive it.
 class ShownMeter {
  public:
   explicit ShownMeter(const sim::WorkMeter& meter);

@@ -60,6 +60,9 @@ std::string missing_text(const SuiteFile& suite) {
 }
 
 sweep::SweepPlan plan_of(sim::Config& config, const SuiteFile& suite) {
+  if (config.given("scene.source")) {
+    config.fail("scene.source", "a suite has its scenes in [[suite.scene]]; leave it out");
+  }
   const std::vector<std::string> axes = {axis_of(suite)};
   if (axes.front().empty()) {
     throw sim::UserError(suite.place, "none of the suite's scenes is there");
@@ -67,11 +70,12 @@ sweep::SweepPlan plan_of(sim::Config& config, const SuiteFile& suite) {
   sweep::SweepPlan plan = sweep::plan_sweep(config, axes);
   const auto point = std::ranges::find(plan.axes, "point");
   const auto at = static_cast<std::size_t>(point - plan.axes.begin());
-  const bool has_baseline =
-      point != plan.axes.end() && std::ranges::any_of(plan.points, [&](const sweep::SweepPoint& each) {
-        return std::get<std::string>(each.values[at]) == suite.baseline;
-      });
-  if (!has_baseline) {
+  const auto is_baseline = [&](const sweep::SweepPoint& each) {
+    return std::get<std::string>(each.values[at]) == suite.baseline;
+  };
+  const bool has_both = point != plan.axes.end() && std::ranges::any_of(plan.points, is_baseline) &&
+                        !std::ranges::all_of(plan.points, is_baseline);
+  if (!has_both) {
     throw sim::UserError(
         suite.place, "there is no other machine, or none of this name: each is a table [sweep.points.NAME]");
   }

@@ -98,7 +98,13 @@ class SuiteReader {
     scene.source = source_of(*table, value.line);
     scene.found = text_of(*table, value.line, "suite.scene", "found", false);
     static_cast<void>(text_of(*table, value.line, "suite.scene", "licence", false));
-    look_for(scene, text_of(*table, value.line, "suite.scene", "sha256", false));
+    const std::string sha256 = text_of(*table, value.line, "suite.scene", "sha256", false);
+    if (!sha256.empty() && (scenes::is_scene_list(scene.source) || !scenes::names_a_file(scene.source) ||
+                            scene.source.ends_with('/') || !is_sha256(sha256))) {
+      fail(value.line, "suite.scene.sha256",
+           "is that of a source that is one file, as 64 of the digits 0 to 9 and a to f");
+    }
+    look_for(scene, sha256);
     for (const SuiteScene& other : suite_.scenes) {
       if (other.name == scene.name || other.source == scene.source) {
         fail(value.line, "suite.scene", "has the name or the source of another scene, " + other.name);
@@ -120,6 +126,10 @@ class SuiteReader {
     } catch (const sim::UserError& error) {
       fail(entry->line, "suite.scene.source", error.what());
     }
+  }
+
+  static bool is_sha256(const std::string& text) {
+    return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
   }
 
   static void look_for(SuiteScene& scene, const std::string& sha256) {

@@ -54,6 +54,18 @@ marti study schemes -- "$source/configs/schemes.toml" "${small[@]}" --set 'schem
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set scene.source=gears:1 \
   --set error.repeats=1 --set error.side=12 --set 'error.samples=[1,2]' --set 'error.depths=[1]' -o error
 marti study stability -- "$source/configs/marti.toml" "${small[@]}" --set stability.rays=100 --set stability.nodes=64 -o stability
+cat >suite.toml <<'TOML'
+[suite]
+baseline = "small"
+scene = [{ name = "a", source = "tetra:2" }, { name = "b", source = "gears:1" }]
+[image]
+width = 8
+height = 6
+[sweep.points]
+small = { cache.size = "1 KiB" }
+large = { cache.size = "8 KiB" }
+TOML
+marti study suite -- suite.toml -o suite
 marti scene list --
 marti scene info -- tetra:3
 marti scene export -- tetra:3 tetra.glb

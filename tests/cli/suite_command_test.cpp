@@ -124,9 +124,9 @@ TEST_F(SuiteCommand, RefusesWhatIsNoSuite) {
                    machines),
            "suite.scene.nmae: unknown key (did you mean \"name\"?)"));
   EXPECT_TRUE(says(refusal("[suite]\nbaseline = \"few\"\n[[suite.scene]]\nname = \"a\"\nsource = "
-                           "\"tri.obj\"\nsha256 = \"00\"\n" +
-                           machines),
-                   "tri.obj is another file: its SHA-256 is not 00"));
+                           "\"tri.obj\"\nsha256 = \"" +
+                           std::string(64, '0') + "\"\n" + machines),
+                   "tri.obj is another file: its SHA-256 is not 00000"));
   write(config, scenes + machines);
   EXPECT_TRUE(says(marti("run " + quoted(config)), "`marti study suite`"));
 }

@@ -177,12 +177,12 @@ TEST(SweepEnd, AFullDiskIsToldAndTheSweepGoesOnLater) {
   const fs::path out = directory.path() / "out";
   // In units of 512 bytes or 1 KiB, as the shell has it: not even room for the tables, for the plan, or for a
   // result, and room for some machines. Without a result nothing is left.
-  for (const char* most : {"1", "8", "20", "100", "400", "800"}) {
+  for (const char* most : {"1", "8", "20", "100", "400", "1200"}) {
     const Outcome full = shell(std::string("ulimit -f ") + most + "; trap '' XFSZ; " + quoted(MARTI_PROGRAM) +
                                " sweep " + quoted(config) + " --quiet -o " + quoted(out));
     EXPECT_EQ(full.status, 2) << full.output;
     EXPECT_TRUE(says(full, "marti: " + (out / "results.sqlite").string()));
-    EXPECT_EQ(fs::exists(out), most == std::string("800")) << full.output;
+    EXPECT_EQ(fs::exists(out), most == std::string("1200")) << full.output;
   }
   const Outcome last = sweep(config, out);
   ASSERT_EQ(last.status, 0) << last.output;

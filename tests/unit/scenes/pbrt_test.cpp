@@ -49,6 +49,7 @@ TEST(Pbrt, TransformsAreThoseOfTheFormat) {
       {"Translate 9 9 9 AttributeBegin Translate 9 9 9 AttributeEnd", {10, 9, 9}},
       {"CoordinateSystem \"a\" Translate 9 9 9 CoordSysTransform \"a\" # back", {1, 0, 0}},
       {"ActiveTransform EndTime Translate 5 5 5 ActiveTransform All", {1, 0, 0}},
+      {"AttributeBegin ActiveTransform EndTime Translate 5 5 5 AttributeEnd Translate +3 0 0", {4, 0, 0}},
       // The coordinates of the camera begin at its eye. They are left-handed, so that corners 1 and 2 are
       // swapped.
       {"CoordSysTransform \"camera\"", {0, 1, 5}},
@@ -260,6 +261,9 @@ TEST(Pbrt, WhatIsWrongIsSaidWithItsLine) {
       {"LookAt 0 0 0 0 0 0 0 1 0", "LookAt needs a point apart from the eye"},
       {"Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ] Shape \"sphere\"", "the transform is not affine"},
       {"AttributeEnd", "AttributeEnd without its begin"},
+      {"ActiveTransform Now", "ActiveTransform is All, StartTime or EndTime, not 'Now'"},
+      {"Translate \"[\" 1 2 3 ]", "'[' is no number"},
+      {"Shape \"plymesh\"", "the name of a file is missing or empty"},
       {"AttributeBegin", "an AttributeBegin has no AttributeEnd"},
       {"ObjectBegin \"a\"", "an ObjectBegin has no ObjectEnd"},
       {"ObjectEnd", "ObjectEnd without its begin"},

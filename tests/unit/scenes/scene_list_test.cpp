@@ -163,6 +163,7 @@ TEST(SceneList, ACameraFileIsACamera) {
 TEST(SceneList, WhatIsNoListIsRefusedWithItsEntry) {
   for (const auto& [list, message] : std::vector<std::pair<std::string, std::string>>{
            {"[", "cannot be read as a list of scenes: "},
+           {"['a.obj']\nscene.bogus = 1", "something follows the list"},
            {"['a.obj', nan]", "cannot be read as a list of scenes: "},
            {"[]", "a list of scenes has 1 to 65536 entries, not 0"},
            {"['a.obj', 3]", "entry 2: must be a text or a table with source, not the integer 3"},
@@ -178,6 +179,8 @@ TEST(SceneList, WhatIsNoListIsRefusedWithItsEntry) {
            {"{source = 'a.obj', translate = [1e31, 0, 0]}", "translate has numbers from -1e30 to 1e30"},
            {"{source = 'a.obj', scale = [1, 0, 1]}", "entry 1, a.obj: its transform is singular"},
            {"{source = 'a.obj', matrix = [1, 2, 0, 0, 2, 4, 0, 0, 0, 0, 1, 0]}", "its transform is singular"},
+           {"{source = 'a.obj', matrix = [[1, 0, 0, 0, 0], [1, 0, 0], [0, 0, 1, 0]]}",
+            "matrix has rows of 4 numbers, not of 5"},
            {"{source = 'a.obj', matrix = [1]}", "matrix has 12 or 16 numbers, row by row, not 1"},
            {"{source = 'a.obj', matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}", "the last row of matrix"},
            {"{source = 'a.obj', scale = 2, matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0]}", "leave these out"},

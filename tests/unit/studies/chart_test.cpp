@@ -93,7 +93,8 @@ TEST(Chart, ChartsOfManyLinesSayWhatTheirLinesAre) {
           << chart.name;
     }
   }
-  EXPECT_EQ(shared_out, (std::set<std::string>{"figure3", "schemes", "schemes_efficiency"}));
+  EXPECT_EQ(shared_out,
+            (std::set<std::string>{"figure3", "memory_latency", "schemes", "schemes_efficiency"}));
 }
 
 }  // namespace
