@@ -116,6 +116,11 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   if (!target_.has_filename() || fs::is_directory(target_, ignored)) {
     fail(target_, EISDIR);
   }
+  // A pipe or a device would be replaced by the file, not written to.
+  if (const fs::file_status status = fs::status(target_, ignored);
+      fs::exists(status) && !fs::is_regular_file(status)) {
+    throw UserError(target_.string() + ": cannot be written: it is no regular file");
+  }
   const std::lock_guard guard(pending().mutex);
   if (pending().locks < most_locks) {
     remove_leftovers(target_);

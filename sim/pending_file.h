@@ -23,7 +23,7 @@ enum class Durability {
 /// PendingFile of the same target removes them.
 class PendingFile {
  public:
-  /// UserError when the file cannot be made.
+  /// UserError when the file cannot be made, or when the target is there and is no regular file.
   explicit PendingFile(std::filesystem::path target);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;

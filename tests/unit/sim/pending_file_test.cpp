@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,6 +61,15 @@ TEST(PendingFile, TakesItsNameOnlyWhenCommitted) {
   pending.commit();
   EXPECT_EQ(read_file(target, 10), "whole");
   EXPECT_EQ(names_in(directory.path()).size(), 1U);
+}
+
+TEST(PendingFile, TakesNoPipesPlace) {
+  const TemporaryDirectory directory;
+  const fs::path pipe = directory.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(user_error_of([&] { const PendingFile pending(pipe); }),
+            pipe.string() + ": cannot be written: it is no regular file");
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST(PendingFile, HasARandomNameAndIsThereAtOnce) {
