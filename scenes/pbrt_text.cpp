@@ -287,7 +287,7 @@ std::string Text::file(const std::string& name) {
   if (name.empty()) {
     fail("the name of a file is missing or empty");
   }
-  const std::string path = access_.directory() + name;
+  std::string path = access_.directory() + name;
   if (!access_.may_read(path)) {
     fail(!access_.refusal().empty() ? access_.refusal() : "there is no file " + in_quotes(name));
   }
