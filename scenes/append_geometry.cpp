@@ -26,6 +26,12 @@ void append_attribute(std::vector<T>& to, std::size_t before, std::vector<T>& fr
 
 }  // namespace
 
+bool fit_together(const Scene& whole, const Scene& part, std::uint64_t most) {
+  return whole.triangles.size() + part.triangles.size() <= most &&
+         whole.positions.size() + part.positions.size() <= most &&
+         whole.quadrics.size() + part.quadrics.size() <= most;
+}
+
 void append_geometry(Scene& to, Scene& part, std::uint32_t first_material) {
   const auto vertices = static_cast<std::uint32_t>(to.positions.size());
   const std::uint32_t sources = to.quadrics.empty() ? 0 : to.quadrics.back().source + 1;

@@ -7,6 +7,7 @@
 
 #include "scenes/source_file.h"
 #include "scenes/text_lines.h"
+#include "scenes/vertex_values.h"
 #include "sim/shown.h"
 
 namespace marti::scenes {
@@ -15,13 +16,12 @@ Camera read_camera_file(const std::filesystem::path& path, const FileOptions& op
   const SourceFile file(path, options);
   const std::string text = file.read(1);
   TextLines lines(text, sim::shown(path.string()), TextLines::Style::plain);
-  constexpr double largest = 1e30;
   std::array<double, 6> numbers{};
   std::size_t count = 0;
   while (lines.next()) {
     for (std::size_t word = 0; word < lines.words().size(); ++word) {
       const double number = lines.number(word);
-      if (!(std::abs(number) <= largest)) {
+      if (!(std::abs(number) <= largest_coordinate)) {
         lines.fail("a coordinate must be a number from -1e30 to 1e30, not " + in_quotes(lines.words()[word]));
       }
       if (count == numbers.size()) {

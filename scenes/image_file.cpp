@@ -105,4 +105,18 @@ Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDe
   return texture;
 }
 
+std::uint32_t add_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode,
+                        bool clamp, Scene& scene, LeftOut& left_out) {
+  try {
+    Texture texture = open_image(file, image, decode, left_out);
+    texture.repeat_u = !clamp;
+    texture.repeat_v = !clamp;
+    scene.textures.push_back(std::move(texture));
+    return static_cast<std::uint32_t>(scene.textures.size() - 1);
+  } catch (const ImageError& error) {
+    left_out.replace("textures that cannot be decoded, by none", error.what());
+    return no_texture;
+  }
+}
+
 }  // namespace marti::scenes

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -29,6 +30,12 @@ class ImageError : public sim::UserError {
 /// there is no decoder or not enough memory.
 [[nodiscard]] Texture open_image(const SourceFile& file, const ImageFile& image, const ImageDecoder& decode,
                                  LeftOut& left_out);
+
+/// Adds the image that open_image() gives to the scene's textures, which repeats unless `clamp`. Returns its
+/// number, or no_texture, which is counted, where that throws ImageError.
+[[nodiscard]] std::uint32_t add_image(const SourceFile& file, const ImageFile& image,
+                                      const ImageDecoder& decode, bool clamp, Scene& scene,
+                                      LeftOut& left_out);
 
 /// The image decoded, to check it: takes no memory. Throws as open_image().
 [[nodiscard]] Texture decode_image(const SourceFile& file, const ImageFile& image,

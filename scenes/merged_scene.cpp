@@ -58,9 +58,7 @@ void MergedScene::add(Scene part, const std::string& name) {
   const auto materials = static_cast<std::uint32_t>(scene_.materials.size());
   const auto textures = static_cast<std::uint32_t>(scene_.textures.size());
   const std::uint64_t most = whole_.options().max_triangles;
-  if (scene_.triangles.size() + part.triangles.size() > most ||
-      scene_.positions.size() + part.positions.size() > most ||
-      scene_.quadrics.size() + part.quadrics.size() > most) {
+  if (!fit_together(scene_, part, most)) {
     whole_.fail("its parts have more than " + std::to_string(most) +
                 " primitives of a kind or vertices, which is more than is accepted");
   }

@@ -80,8 +80,7 @@ class ObjReader {
       grow(normals_);
     } else if (word == "vt") {
       const glm::dvec3 given = vector(1);
-      const glm::dvec2 uv(given.x, 1.0 - given.y);
-      coordinates_.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0));
+      coordinates_.push_back(turned_coordinates(given.x, given.y));
       grow(coordinates_);
     } else if (word == "f" || word == "fo") {
       add_face();

@@ -169,16 +169,8 @@ std::uint32_t ObjMaterials::texture_of(const Known& known) {
     left_out_.replace("textures that cannot be read, by none", reason);
     return no_texture;
   }
-  try {
-    const ImageFile image{known.source.texture, std::as_bytes(std::span(*bytes))};
-    Texture texture = open_image(file_, image, decode_, left_out_);
-    texture.repeat_u = !known.source.clamp;
-    texture.repeat_v = !known.source.clamp;
-    place->second = static_cast<std::uint32_t>(scene_.textures.size());
-    scene_.textures.push_back(std::move(texture));
-  } catch (const ImageError& error) {
-    left_out_.replace("textures that cannot be decoded, by none", error.what());
-  }
+  place->second = add_image(file_, {known.source.texture, std::as_bytes(std::span(*bytes))}, decode_,
+                            known.source.clamp, scene_, left_out_);
   return place->second;
 }
 

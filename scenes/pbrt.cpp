@@ -257,11 +257,8 @@ class Reader {
   }
 
   void check_size(const Scene& part) const {
-    const Scene& whole = object_ != nullptr ? object_->scene : scene_;
     const std::uint64_t most = file_.options().max_triangles;
-    if (whole.triangles.size() + part.triangles.size() > most ||
-        whole.positions.size() + part.positions.size() > most ||
-        whole.quadrics.size() + part.quadrics.size() > most) {
+    if (!fit_together(object_ != nullptr ? object_->scene : scene_, part, most)) {
       text_.fail("the scene has more than " + std::to_string(most) +
                  " triangles or vertices, which is more than is accepted");
     }

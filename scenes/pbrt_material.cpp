@@ -216,15 +216,10 @@ std::uint32_t PbrtMaterials::image(const Parameters& parameters) {
     left_out_.replace("textures that cannot be read, by none", reason);
     return no_texture;
   }
-  try {
-    Texture texture = open_image(file_, {name, std::as_bytes(std::span(*bytes))}, decode_, left_out_);
-    texture.repeat_u = !clamp;
-    texture.repeat_v = !clamp;
-    texture.srgb = !linear;
-    place->second = static_cast<std::uint32_t>(scene_.textures.size());
-    scene_.textures.push_back(std::move(texture));
-  } catch (const ImageError& error) {
-    left_out_.replace("textures that cannot be decoded, by none", error.what());
+  place->second =
+      add_image(file_, {name, std::as_bytes(std::span(*bytes))}, decode_, clamp, scene_, left_out_);
+  if (place->second != no_texture) {
+    scene_.textures[place->second].srgb = !linear;
   }
   return place->second;
 }

@@ -37,7 +37,7 @@ class PbrtMaterials {
   std::size_t add(std::string type, Parameters parameters);
   /// Gives a name to a material whose type is its parameter `type`.
   void add_named(const std::string& name, Parameters parameters);
-  /// The number of the material of this name. Throws UserError when there is none.
+  /// The number of the material with this name. Throws UserError when no material has it.
   [[nodiscard]] std::size_t named(const std::string& name) const;
   void add_texture(std::string name, std::string kind, Parameters parameters);
 

@@ -46,8 +46,7 @@ std::vector<glm::dvec2> coordinates(const Parameters& parameters, std::size_t co
   std::vector<glm::dvec2> all;
   all.reserve(given.size() / 2);
   for (std::size_t i = 0; i < given.size(); i += 2) {
-    const glm::dvec2 uv(given[i], 1.0 - given[i + 1]);
-    all.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0));
+    all.push_back(turned_coordinates(given[i], given[i + 1]));
   }
   return all;
 }

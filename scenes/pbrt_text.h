@@ -33,15 +33,17 @@ class Parameters {
   Parameters(std::vector<Parameter> all, std::string place)
       : all_(std::move(all)), place_(std::move(place)) {}
 
-  /// The first of this name; nullptr if there is none.
+  /// The first parameter with this name; nullptr if no parameter has it.
   [[nodiscard]] const Parameter* find(std::string_view name) const;
   /// Bytes of host memory that they take.
   [[nodiscard]] std::uint64_t bytes() const;
-  /// The numbers of one; none if there is none. Throws UserError when there are not a multiple of `each`.
+  /// The numbers of the parameter `name`; an empty list if it is not given. Throws UserError when their count
+  /// is not a multiple of `each`.
   [[nodiscard]] const std::vector<double>& numbers(std::string_view name, std::size_t each) const;
   /// One finite number. Throws UserError when it is something else or beyond `lowest` to `highest`.
   [[nodiscard]] double number(std::string_view name, double otherwise, double lowest, double highest) const;
-  /// One text; empty if there is none. Throws UserError when it is something else.
+  /// The text of the parameter `name`; empty if it is not given. Throws UserError when its value is not one
+  /// text.
   [[nodiscard]] std::string text(std::string_view name) const;
   /// A point or a vector. Throws UserError when it is not three numbers up to 1e30.
   [[nodiscard]] glm::dvec3 vector(std::string_view name, const glm::dvec3& otherwise) const;

@@ -10,13 +10,12 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "scenes/vertex_values.h"
 #include "sim/error.h"
 
 namespace marti::scenes {
 
 namespace {
-
-constexpr double largest_coordinate = 1e30;
 
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 

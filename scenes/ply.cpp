@@ -185,8 +185,7 @@ class PlyReader {
         scene_.normals.push_back(unit_or_zero({given[3], given[4], given[5]}));
       }
       if (has_coordinates_) {
-        const glm::dvec2 uv(given[6], 1.0 - given[7]);
-        scene_.uvs.push_back(std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0));
+        scene_.uvs.push_back(turned_coordinates(given[6], given[7]));
       }
     }
   }

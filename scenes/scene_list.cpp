@@ -8,6 +8,7 @@
 
 #include "scenes/merged_scene.h"
 #include "scenes/source_file.h"
+#include "scenes/vertex_values.h"
 #include "sim/config.h"
 #include "sim/document.h"
 #include "sim/error.h"
@@ -20,8 +21,6 @@ namespace marti::scenes {
 namespace {
 
 using sim::DocumentValue;
-
-constexpr double largest_entry = 1e30;
 
 [[noreturn]] void fail(const std::string& entry, const std::string& message) {
   throw sim::UserError(entry + ": " + message);
@@ -52,7 +51,7 @@ std::vector<double> numbers_of(const DocumentValue& value, const std::string& en
     const auto* const whole = std::get_if<std::int64_t>(&element.content);
     const auto* const real = std::get_if<double>(&element.content);
     const double number = whole != nullptr ? static_cast<double>(*whole) : real != nullptr ? *real : NAN;
-    if (!(std::abs(number) <= largest_entry)) {
+    if (!(std::abs(number) <= largest_coordinate)) {
       fail(entry, key + " has numbers from -1e30 to 1e30, not " + describe(element));
     }
     numbers.push_back(number);

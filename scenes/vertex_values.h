@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace marti::scenes {
@@ -14,6 +15,12 @@ inline constexpr double largest_coordinate = 1e30;
 [[nodiscard]] inline bool is_usable(const glm::dvec3& p) {
   return std::abs(p.x) <= largest_coordinate && std::abs(p.y) <= largest_coordinate &&
          std::abs(p.z) <= largest_coordinate;
+}
+
+/// Texture coordinates of a file whose v goes up, as Scene::uvs has them; (0, 0) if they are not finite.
+[[nodiscard]] inline glm::dvec2 turned_coordinates(double u, double v) {
+  const glm::dvec2 uv(u, 1.0 - v);
+  return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::dvec2(0.0);
 }
 
 /// A unit vector along n, or zero if n has no direction. One that is of unit length up to rounding stays as

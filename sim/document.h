@@ -37,7 +37,7 @@ struct DocumentEntry {
 /// In words: "the integer 3", "a table".
 [[nodiscard]] std::string describe(const DocumentValue& value);
 
-/// The value as TOML in one line, the same for equal values: `['a.obj', {source = 'b.obj', scale = 2}]`.
+/// The value as TOML in one line; equal values give equal texts: `['a.obj', {source = 'b.obj', scale = 2}]`.
 /// Texts stand in single quotation marks where they can, so that quoting all of it needs no escapes. A date
 /// or time becomes an empty text.
 [[nodiscard]] std::string print_in_line(const DocumentValue& value);

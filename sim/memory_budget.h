@@ -22,9 +22,9 @@ class MemoryBudget {
   /// `limit` in bytes. `given`: the user has set it; else it follows from the host.
   explicit MemoryBudget(std::uint64_t limit, bool given = false) : limit_(limit), given_(given) {}
 
-  /// Whoever takes this memory step by step asks `meter` at each step whether somebody still waits for what
-  /// is made of it: require(), take() and end_if_stopped() throw Stopped when nobody does. Null: somebody
-  /// does.
+  /// From now on require(), take() and end_if_stopped() throw Stopped after meter->stop(). Readers and
+  /// builders take their memory step by step, so each step ends them then. Null: nothing ends them.
+  /// `meter` must outlive the budget and its copies.
   void wait_with(const WorkMeter* meter) { meter_ = meter; }
   /// For steps that take no memory.
   void end_if_stopped() const;
