@@ -11,9 +11,6 @@
 #include <string_view>
 #include <utility>
 
-#include "studies/explore/page_files.h"
-#include "studies/report/page/page_files.h"
-
 namespace marti::studies::explore {
 
 namespace {
@@ -104,31 +101,17 @@ std::optional<std::string> ExploreService::below_token(const std::string& path) 
 }
 
 std::optional<HttpResponse> ExploreService::file(const std::string& name) const {
-  const auto made = [](const char* type, std::string_view text) {
-    return HttpResponse{.content_type = type, .body = std::string(text)};
-  };
   if (name.empty()) {
-    return made(html_type, explore_page_html());
-  }
-  if (name == "report.css") {
-    return made("text/css; charset=utf-8", report::report_page_css().text);
-  }
-  if (name == "explore.css") {
-    return made("text/css; charset=utf-8", explore_page_css());
+    // What the page may do beside it says itself.
+    return HttpResponse{200, html_type, session_.page(), "frame-ancestors 'none'"};
   }
   if (name == "keys") {
-    return made(json_type, session_.keys());
+    return json_response(session_.keys());
   }
   if (name == "progress") {
     const sim::WorkMeter::State state = turns_.state();
-    return made(
-        json_type,
+    return json_response(
         Json({{"part", state.part}, {"unit", state.unit}, {"done", state.done}, {"of", state.of}}).dump());
-  }
-  for (const auto& [script, text] : explore_scripts()) {
-    if (name == script) {
-      return made("text/javascript; charset=utf-8", text);
-    }
   }
   return std::nullopt;
 }
@@ -159,12 +142,12 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
   try {
     if (name == "time") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return json_response(session_.answer(settings, helps::Measuring::none, meter));
+        return json_response(session_.shown(settings, helps::Measuring::none, meter));
       });
     }
     if (name == "helps") {
       return simulate(body, [&](const Settings& settings, sim::WorkMeter* meter) {
-        return json_response(session_.answer(settings, helps::Measuring::within_budget, meter));
+        return json_response(session_.shown(settings, helps::Measuring::within_budget, meter));
       });
     }
     if (name == "model") {  // beside the simulation whose answer it stands for

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t threads = 16;
 constexpr const char* any_path = ".*";
+constexpr const char* policy = "Content-Security-Policy";
 
 std::vector<std::string> values_of(const httplib::Request& request, const std::string& name) {
   std::vector<std::string> values;
@@ -34,24 +35,25 @@ HttpHead head_of(const httplib::Request& request) {
           values_of(request, "Content-Type")};
 }
 
-// Nothing of the page may be kept, shown inside another page, or taken for another type; it may load only
-// what this server gives; and no other page learns its address.
+// Nothing of the page may be kept, shown inside another page, or taken for another type, and no other page
+// learns its address.
 const httplib::Headers& headers_of_all() {
-  static const httplib::Headers headers = {
-      {"Content-Security-Policy",
-       "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; base-uri "
-       "'none'; form-action 'none'; frame-ancestors 'none'"},
-      {"X-Content-Type-Options", "nosniff"},
-      {"X-Frame-Options", "DENY"},
-      {"Referrer-Policy", "no-referrer"},
-      {"Cross-Origin-Opener-Policy", "same-origin"},
-      {"Cross-Origin-Resource-Policy", "same-origin"},
-      {"Cache-Control", "no-store"}};
+  static const httplib::Headers headers = {{policy, "default-src 'none'; frame-ancestors 'none'"},
+                                           {"X-Content-Type-Options", "nosniff"},
+                                           {"X-Frame-Options", "DENY"},
+                                           {"Referrer-Policy", "no-referrer"},
+                                           {"Cross-Origin-Opener-Policy", "same-origin"},
+                                           {"Cross-Origin-Resource-Policy", "same-origin"},
+                                           {"Cache-Control", "no-store"}};
   return headers;
 }
 
 void put(HttpResponse made, httplib::Response& response) {
   response.status = made.status;
+  if (!made.policy.empty()) {
+    response.headers.erase(policy);
+    response.set_header(policy, made.policy);
+  }
   // cpp-httplib compresses types that begin with "text/", which takes longer than to send them, but not what
   // a provider gives. Answers come from none, because stop() cuts providers off.
   if (made.content_type.starts_with("application/")) {

@@ -24,6 +24,7 @@ struct HttpResponse {
   int status = 200;
   std::string content_type{};
   std::string body{};
+  std::string policy{};  ///< Content-Security-Policy; empty: nothing is loaded, and no page has it in a frame
 };
 
 /// Answers requests, several at a time. Its functions must not throw.

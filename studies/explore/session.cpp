@@ -11,6 +11,7 @@
 #include "sim/config.h"
 #include "sim/error.h"
 #include "sim/nearest.h"
+#include "studies/explore/explore_page.h"
 #include "studies/explore/modelled_frame.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/keys/config_file.h"
@@ -89,9 +90,11 @@ std::string keys_json(const sim::Config& config) {
       units[figure.name] = figure.unit;
     }
   }
-  const Json keys = {{"file", config.name()}, {"scene", config.text("scene.source")},
-                     {"sections", sections},  {"controls", controls},
-                     {"units", units},        {"given", given}};
+  const Json keys = {{"file", config.name()},
+                     {"sections", sections},
+                     {"controls", controls},
+                     {"units", units},
+                     {"given", given}};
   return keys.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -122,6 +125,7 @@ Session::Session(const std::filesystem::path& file, std::vector<std::string> ass
   options.meter = meter;
   functional_ = run::run(config, std::move(options)).functional;
   keys_ = keys_json(config);
+  page_ = explore_page(config.name() + ", " + config.text("scene.source"));
 }
 
 template <class Make>
@@ -171,6 +175,19 @@ std::string Session::timed(const Settings& settings, helps::Measuring what_helps
 std::string Session::answer(const Settings& settings, helps::Measuring what_helps,
                             sim::WorkMeter* meter) const {
   return refused_or([&] { return timed(settings, what_helps, meter); });
+}
+
+std::string Session::shown(const Settings& settings, helps::Measuring what_helps,
+                           sim::WorkMeter* meter) const {
+  return refused_or([&] {
+    const std::string result = timed(settings, what_helps, meter);
+    report::ReportData report = report::report_of_run(tables::RunJson(Json::parse(result), name_));
+    if (!report::have_vega_scripts()) {
+      report.charts.clear();
+    }
+    const std::string page = report::page_parts(report).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return "{\"result\":" + result + ",\"page\":" + page + "}";
+  });
 }
 
 std::string Session::modelled(const Settings& settings) const {

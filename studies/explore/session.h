@@ -33,11 +33,19 @@ class Session {
   /// configuration, and what else of the configuration a copy of it must have.
   [[nodiscard]] const std::string& keys() const { return keys_; }
 
+  /// The page, which asks for all that follows.
+  [[nodiscard]] const std::string& page() const { return page_; }
+
   /// The result of the machine with these settings, as `marti run --json` prints it with them behind the
   /// session's own; {"error": message, "key": name or null} when the machine is refused. `meter` is
   /// told how far it is; after its stop() this throws sim::Stopped. Several threads may call it.
   [[nodiscard]] std::string answer(const Settings& settings, helps::Measuring what_helps,
                                    sim::WorkMeter* meter = nullptr) const;
+
+  /// The same as "result", and as "page" what the report of this machine shows (report::page_parts); without
+  /// charts where the program has no scripts that draw them.
+  [[nodiscard]] std::string shown(const Settings& settings, helps::Measuring what_helps,
+                                  sim::WorkMeter* meter = nullptr) const;
 
   /// The machine's frame time by a model, in a fraction of the time that answer() takes: {"end",
   /// "end_of_one"} in ps, and how many "packets" it was made of, "of_packets"; null for a machine that the
@@ -66,6 +74,7 @@ class Session {
   mutable run::KeptStrippedLogs stripped_logs_;  // guards itself
   mutable ExploredMachines explored_;            // guards itself
   std::string keys_;
+  std::string page_;
 };
 
 }  // namespace marti::studies::explore

@@ -12,15 +12,14 @@
 #include "scenes/scene_list.h"
 #include "sim/config_errors.h"
 #include "sim/error.h"
-#include "sim/nearest.h"
 #include "sim/sha256.h"
 #include "sim/shown.h"
+#include "studies/sweep/plan/table_texts.h"
 
 namespace marti::studies::suite {
 
 namespace {
 
-using sim::DocumentEntry;
 using sim::DocumentValue;
 
 constexpr std::size_t most_scenes = 1000;
@@ -33,98 +32,66 @@ class SuiteReader {
 
   SuiteFile read() {
     const DocumentValue::Table& section = config_.free_section("suite");
-    const int line = std::max(1, config_.free_section_line("suite"));
+    const int line = config_.free_section_line("suite");
     if (section.empty()) {
-      fail(line, "suite", "is missing: the baseline, and a table [[suite.scene]] for each scene");
+      sim::fail_at(config_, std::max(1, line), "suite",
+                   "is missing: the baseline, and a table [[suite.scene]] for each scene");
     }
-    refuse_others(section, "suite", {"baseline", "scene"});
-    suite_.baseline = text_of(section, line, "suite", "baseline", true);
-    suite_.place = sim::place_in_file(config_.name(), find(section, "baseline")->line, "suite.baseline");
-    const DocumentEntry* const scenes = find(section, "scene");
-    const DocumentValue::List* const list = scenes == nullptr ? nullptr : scenes->value.list();
+    const sweep::TableTexts texts(config_, section, line, "suite", {"baseline", "scene"});
+    suite_.baseline = texts.text("baseline");
+    suite_.place = texts.place("baseline");
+    const DocumentValue::List* const list = texts.entry("scene").value.list();
     if (list == nullptr || list->empty() || list->size() > most_scenes) {
-      fail(line, "suite.scene", "must be 1 to 1000 tables, [[suite.scene]]");
+      texts.fail("scene", "must be 1 to 1000 tables, [[suite.scene]]");
     }
     for (const DocumentValue& scene : *list) {
-      add(scene);
+      if (scene.table() == nullptr) {
+        texts.fail("scene", "must be a table, not " + describe(scene));
+      }
+      add({config_,
+           *scene.table(),
+           scene.line,
+           "suite.scene",
+           {"name", "source", "found", "licence", "sha256"}});
     }
     return std::move(suite_);
   }
 
  private:
-  [[noreturn]] void fail(int line, std::string_view key, const std::string& message) const {
-    sim::fail_at(config_, line, key, message);
-  }
-
-  void refuse_others(const DocumentValue::Table& table, const std::string& place,
-                     const std::vector<std::string>& keys) const {
-    for (const DocumentEntry& entry : table) {
-      if (std::ranges::find(keys, entry.name) == keys.end()) {
-        fail(entry.line, place + "." + entry.name, "unknown key" + sim::did_you_mean(entry.name, keys));
-      }
-    }
-  }
-
-  [[nodiscard]] std::string text_of(const DocumentValue::Table& table, int line, const std::string& place,
-                                    const std::string& key, bool needed) const {
-    const DocumentEntry* const entry = find(table, key);
-    if (entry == nullptr) {
-      if (needed) {
-        fail(line, place + "." + key, "is missing");
-      }
-      return {};
-    }
-    const std::string* const text = entry->value.text();
-    if (text == nullptr || text->empty()) {
-      fail(entry->line, place + "." + key, "must be a text, not " + describe(entry->value));
-    }
-    return *text;
-  }
-
-  void add(const DocumentValue& value) {
-    const DocumentValue::Table* const table = value.table();
-    if (table == nullptr) {
-      fail(value.line, "suite.scene", "must be a table, not " + describe(value));
-    }
-    refuse_others(*table, "suite.scene", {"name", "source", "found", "licence", "sha256"});
+  void add(const sweep::TableTexts& texts) {
     SuiteScene scene;
-    scene.name = text_of(*table, value.line, "suite.scene", "name", true);
+    scene.name = texts.text("name");
     const bool plain = std::ranges::all_of(
         scene.name, [](char c) { return c >= ' ' && c <= '~' && c != '\'' && c != '"' && c != '\\'; });
     if (!plain || scene.name.size() > longest_name) {
-      fail(value.line, "suite.scene.name",
-           "must have 1 to 60 printable ASCII characters without quotation marks and backslashes");
+      texts.fail("name",
+                 "must have 1 to 60 printable ASCII characters without quotation marks and backslashes");
     }
-    scene.source = source_of(*table, value.line);
-    scene.found = text_of(*table, value.line, "suite.scene", "found", false);
-    static_cast<void>(text_of(*table, value.line, "suite.scene", "licence", false));
-    const std::string sha256 = text_of(*table, value.line, "suite.scene", "sha256", false);
+    scene.source = source_of(texts);
+    scene.found = texts.text_or_none("found");
+    static_cast<void>(texts.text_or_none("licence"));
+    const std::string sha256 = texts.text_or_none("sha256");
     if (!sha256.empty() && (scenes::is_scene_list(scene.source) || !scenes::names_a_file(scene.source) ||
                             scene.source.ends_with('/') || !is_sha256(sha256))) {
-      fail(value.line, "suite.scene.sha256",
-           "is that of a source that is one file, as 64 of the digits 0 to 9 and a to f");
+      texts.fail("sha256", "is that of a source that is one file, as 64 of the digits 0 to 9 and a to f");
     }
     look_for(scene, sha256);
     for (const SuiteScene& other : suite_.scenes) {
       if (other.name == scene.name || other.source == scene.source) {
-        fail(value.line, "suite.scene", "has the name or the source of another scene, " + other.name);
+        texts.fail("has the name or the source of another scene, " + other.name);
       }
     }
     suite_.scenes.push_back(std::move(scene));
   }
 
   // A text, or what scene.source may be beside it.
-  [[nodiscard]] std::string source_of(const DocumentValue::Table& table, int line) const {
-    const DocumentEntry* const entry = find(table, "source");
-    if (entry == nullptr) {
-      fail(line, "suite.scene.source", "is missing");
-    }
-    const DocumentValue& value = entry->value;
+  [[nodiscard]] std::string source_of(const sweep::TableTexts& texts) const {
+    const DocumentValue& value = texts.entry("source").value;
     const std::string source = value.text() != nullptr ? *value.text() : print_in_line(value);
     try {
       return scenes::source_from(source, directory_);
     } catch (const sim::UserError& error) {
-      fail(entry->line, "suite.scene.source", error.what());
+      texts.fail("source", error.what());
     }
   }
 

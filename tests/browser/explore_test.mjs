@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { promisify } from "node:util";
 import { startBrowser } from "./browser.mjs";
-import { download, overflow, unnamed } from "./inspect.mjs";
+import { chartNames, download, onPaper, overflow, rowsOf, unnamed } from "./inspect.mjs";
 
 const program = process.env.MARTI_PROGRAM;
 const work = join(process.env.MARTI_WORK, "explored");
@@ -54,7 +54,7 @@ async function open(hash = "", address = served.address) {
     if (message.type() === "error" && !message.text().includes("409")) faults.push(message.text());
   });
   page.on("request", (request) => {
-    if (!request.url().startsWith(address) && !request.url().startsWith("data:")) faults.push(request.url());
+    if (!request.url().startsWith(address) && !/^(data|blob):/.test(request.url())) faults.push(request.url());
   });
   await page.goto(address + hash);
   return { page, faults, close: () => context.close() };
@@ -97,10 +97,15 @@ describe("the page of marti explore", () => {
         const shown = await answer_of(page, settings);
         const result = await run(config, settings);
         assert.deepEqual(shown.figures, result.figures.machine);
-        const bars = await page.$$eval("#shares rect, #lost rect", (all) => all.map(({ dataset }) => ({ ...dataset })));
+        await page.waitForFunction((end) => {
+          const shown = marti.views.run_cycles?.data("rows").find(({ activity }) => activity === "idle");
+          return explore.answered.answer.figures.end === end && shown?.ps === explore.answered.answer.figures.time_idle;
+        }, result.figures.machine.end);
+        const bars = await rowsOf(page, "run_cycles");
         assert.ok(bars.length > 3);
-        for (const { figure, value } of bars) assert.equal(Number(value), result.figures.machine[figure], figure);
-        assert.match(await page.locator("#answer").textContent(), new RegExp(`on ${result.figures.machine.nodes} node`));
+        for (const { activity, ps } of bars) assert.equal(ps, result.figures.machine[`time_${activity}`], activity);
+        assert.match(await page.locator("#sentences").textContent(), new RegExp(`^A frame takes .* on ${result.figures.machine.nodes} node`));
+        assert.equal(await page.locator("#machine-tables td").filter({ hasText: /^end$/ }).count(), 1);
       };
       await same();
       await page.getByRole("button", { name: "double machine.nodes" }).click();
@@ -135,12 +140,13 @@ describe("the page of marti explore", () => {
 
   it("fills in the curve exactly and says what would help", () =>
     withOwnPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
-      await page.waitForFunction(() => document.querySelectorAll("#curve circle").length === 3);
-      for (const { at, value } of await page.$$eval("#curve circle", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
-        assert.equal(Number(value), (await run(config, { "machine.nodes": at })).figures.machine.speed_up);
+      const whole = () => marti.views.explored_curve?.data("rows").filter(({ height }) => height !== null).length === 3;
+      await page.waitForFunction(whole);
+      for (const { value, height } of await rowsOf(page, "explored_curve")) {
+        assert.equal(height, (await run(config, { "machine.nodes": value })).figures.machine.speed_up);
       }
       const { machine } = await run(config, {}, "--what-helps");
-      await page.waitForFunction((text) => document.getElementById("helps").textContent === text, machine.what_helps.sentence);
+      await page.waitForFunction((text) => document.getElementById("sentences").textContent.includes(text), machine.what_helps.sentence);
       const best = machine.what_helps.resources.find(({ step }) => step?.saved > 0);
       await page.locator("#steps button").first().click();
       await page.waitForFunction((end) => explore.answered.answer.figures.end === end, best.step.frame_time_ps);
@@ -213,16 +219,40 @@ describe("the page of marti explore", () => {
       assert.equal(await page.locator("#found").textContent(), "");
     }));
 
-  it("has round numbers at the curve's axis", () =>
-    withOwnPage("#axis=machine.nodes&values=1,2,5&figure=speed_up", async (page) => {
-      await page.waitForFunction(() => document.querySelectorAll("#curve circle").length === 3);
-      const ticks = (await page.$$eval("#curve .tick", (all) => all.map(({ textContent, y }) => [Number(textContent), y.baseVal[0].value])));
-      assert.ok(ticks.length >= 3 && ticks.length <= 6, `${ticks.length} ticks`);
-      // They and the points have one scale.
-      const points = await page.$$eval("#curve circle", (all) => all.map(({ dataset, cy }) => [Number(dataset.value), cy.baseVal.value + 4]));
-      const scale = (ticks[0][1] - ticks[1][1]) / ticks[1][0];
-      for (const [value, y] of [...ticks, ...points]) assert.ok(Math.abs(ticks[0][1] - value * scale - y) < 0.5, `${value} at ${y}`);
-      assert.match(ticks[1][0].toExponential(), /^[125]e/);
+  it("goes where a point of the curve is clicked", () =>
+    withOwnPage("#axis=machine.nodes&values=1,2,5&figure=end", async (page) => {
+      const marks = page.locator("#chart-explored_curve .mark-symbol.role-mark path");
+      await page.waitForFunction(() => document.querySelectorAll("#chart-explored_curve .mark-symbol.role-mark path").length === 3);
+      await marks.nth(2).click();
+      const { figures } = await answer_of(page, { "machine.nodes": "5" });
+      const [row] = (await rowsOf(page, "explored_curve")).filter(({ value }) => value === "5");
+      assert.ok(Math.abs(row.height - figures.end * 1e-9) <= 1e-12 * row.height);
+    }));
+
+  it("has the charts and tables of the machine's report, sorted and saved as there", () =>
+    withOwnPage("#machine.nodes=3", async (page) => {
+      await answer_of(page, { "machine.nodes": "3" });
+      await page.waitForFunction(() => marti.views.run_cycles && marti.views.run_nodes);
+      const names = await chartNames(page);
+      for (const name of ["explored_curve", "run_cycles", "run_loss", "run_nodes"]) assert.ok(names.includes(name), name);
+      const csv = await download(page, page.locator("a[data-save=csv][data-chart=run_nodes]"));
+      assert.equal(new Set(csv.text.trim().split("\r\n").slice(1).map((line) => line.split(",")[0])).size, 3);
+      const figures = page.locator("#machine-tables details").filter({ hasText: "Figures of the run" });
+      await figures.evaluate((details) => (details.open = true));
+      await figures.getByRole("button", { name: "figure" }).click();
+      const first = () => figures.locator("tbody td").first().textContent();
+      const before = await first();
+      await figures.getByRole("button", { name: "figure" }).click();
+      assert.notEqual(await first(), before);
+      // What is open stays open with the next machine, whose charts have its rows.
+      await page.getByRole("button", { name: "double machine.nodes" }).click();
+      await answer_of(page, { "machine.nodes": "6" });
+      await page.waitForFunction(() => new Set(marti.views.run_nodes.data("rows").map(({ node }) => node)).size === 6);
+      assert.equal(await page.locator("#machine-tables details[open]").filter({ hasText: "Figures of the run" }).count(), 1);
+      // A link to a part leaves the settings in the address.
+      await page.getByRole("link", { name: "Tables", exact: true }).click();
+      await page.waitForTimeout(300);
+      assert.match(page.url(), /machine\.nodes=6/);
     }));
 
   it("saves what marti runs and sweeps", () =>
@@ -300,12 +330,12 @@ describe("the page of marti explore", () => {
       });
       await page.waitForFunction(() => /^simulating for .* s: timing, 3 of 9 packets;/.test(document.getElementById("state").textContent));
       // Meanwhile there is a figure, and it says that it is modelled.
-      await page.waitForFunction(() => /^frame about .* modelled, from \d+ of \d+ packets$/.test(document.getElementById("answer").textContent));
+      await page.waitForFunction(() => /^A frame takes about .* modelled, from \d+ of \d+ packets\.$/.test(document.getElementById("sentences").textContent));
       const { end } = await page.evaluate(() => explore.server.model({ "machine.nodes": "3" }));
       const exact = await answer_of(page, { "machine.nodes": "3" });
       assert.ok(Math.abs(end / exact.figures.end - 1) < 0.25, `${end} and ${exact.figures.end}`);
-      assert.match(await page.locator("#answer").textContent(), /^frame (?!about)/);
-      assert.equal(await page.locator("#answer.old, #shares.old").count(), 0);
+      assert.match(await page.locator("#sentences").textContent(), /^A frame takes (?!about)/);
+      assert.equal(await page.locator("html.old").count(), 0);
     }));
 
   it("saves a report of all machines", () =>
@@ -322,6 +352,9 @@ describe("the page of marti explore", () => {
       assert.deepEqual(await unnamed(page), []);
       await page.setViewportSize({ width: 360, height: 740 });
       assert.deepEqual(await overflow(page), { pixels: 0, elements: [] });
+      await page.emulateMedia({ media: "print" });
+      assert.deepEqual((await onPaper(page)).controls, []);
+      await page.emulateMedia({ media: "screen" });
       if (process.env.MARTI_PICTURES) {
         await page.setViewportSize({ width: 1400, height: 1000 });
         await page.waitForTimeout(3000);
@@ -364,7 +397,7 @@ describe("the page of marti explore", () => {
           made.src = address + source;
           document.body.append(made);
         });
-      tried.script = await loaded("script", "state.js");
+      tried.script = await loaded("script", "keys");
       const frame = document.createElement("iframe");
       frame.src = address;
       document.body.append(frame);

@@ -1,10 +1,9 @@
-// The answer of a machine: one line, where the time goes, what would help.
+// The answer of a machine: the sentences, charts and tables that its report has, and what would help.
 "use strict";
 
 explore.answer = (() => {
   const { element, of } = explore.controls;
   const most_steps = 6;
-  const svg = "http://www.w3.org/2000/svg";
   const at = (id) => document.getElementById(id);
   let units = {};  // of the figures, by their names
 
@@ -12,12 +11,6 @@ explore.answer = (() => {
   const time = (picoseconds) => {
     const [unit, size] = [["s", 1e12], ["ms", 1e9], ["us", 1e6], ["ns", 1e3]].find(([, size]) => picoseconds >= size) ?? ["ps", 1];
     return `${(picoseconds / size).toFixed(unit === "ps" ? 0 : 3)} ${unit}`;
-  };
-  const drawn = (name, attributes, text = "") => {
-    const made = document.createElementNS(svg, name);
-    for (const [attribute, value] of Object.entries(attributes)) made.setAttribute(attribute, value);
-    made.textContent = text;
-    return made;
   };
 
   /** A figure of the catalogue as people read it, by its unit. */
@@ -28,45 +21,18 @@ explore.answer = (() => {
     return Number.isInteger(value) ? value.toLocaleString("en") : value.toPrecision(4);
   }
 
-  /** Bars of the figures whose names begin with `prefix`; those of 0 are left out. */
-  // The share "idle" has the time of all nodes that wait for the last one; this loss is another figure.
-  const named = (name, prefix) => (name === "lost_idle" ? "no work at all" : name.slice(prefix.length).replaceAll("_", " "));
-
-  function bars(id, figures, prefix, whole) {
-    const rows = Object.entries(figures).filter(([name, value]) => name.startsWith(prefix) && Math.abs(value) > 1e-12);
-    rows.sort(([, a], [, b]) => b - a);
-    const height = 22;
-    const chart = drawn("svg", { class: "bar", viewBox: `0 0 480 ${Math.max(1, rows.length) * height}`, role: "img" });
-    chart.setAttribute("aria-label", rows.map(([name, value]) => `${name} ${shown(name, value)}`).join(", ") || "nothing");
-    rows.forEach(([name, value], i) => {
-      const width = Math.max(1, Math.min(1, Math.abs(value) / whole) * 240);
-      chart.append(
-        drawn("text", { x: 0, y: i * height + 15 }, named(name, prefix)),
-        drawn("rect", { x: 150, y: i * height + 3, width, height: height - 6, "data-figure": name, "data-value": value }),
-        drawn("text", { x: 156 + width, y: i * height + 15 }, shown(name, value)),
-      );
-    });
-    at(id).replaceChildren(chart);
+  function say(sentences, old) {
+    at("sentences").replaceChildren(...sentences.map((textContent) => element("li", { textContent })));
+    document.documentElement.classList.toggle("old", old);
   }
 
-  function line(figures, base) {
-    const change = base ? figures.end / base.end - 1 : 0;
-    const parts = [
-      `frame ${time(figures.end)}`,
-      Math.abs(change) > 1e-9 ? `(${change < 0 ? "" : "+"}${(100 * change).toFixed(1)} % against the configuration)` : "",
-      `on ${figures.nodes} node${figures.nodes === 1 ? "" : "s"}:`,
-      [
-        figures.speed_up === undefined ? "" : `speed-up ${figures.speed_up.toFixed(2)}`,
-        figures.efficiency === undefined ? "" : `efficiency ${percent(figures.efficiency)}`,
-        figures.hit_ratio === undefined ? "" : `${percent(figures.hit_ratio)} of references hit`,
-        figures.interconnect_utilisation === undefined ? "" : `interconnect ${percent(figures.interconnect_utilisation)} busy`,
-      ].filter(Boolean).join(", "),
-    ];
-    return parts.filter(Boolean).join(" ");
+  /** How the frame time differs from that of the configuration. */
+  function change(figures, base) {
+    const gain = base?.end ? figures.end / base.end - 1 : 0;
+    return Math.abs(gain) > 1e-9 ? [`That is ${percent(Math.abs(gain))} ${gain < 0 ? "less" : "more"} than with the configuration as it is.`] : [];
   }
 
   function show_helps(helps) {
-    at("helps").textContent = helps?.sentence ?? "";
     const worth = (helps?.resources ?? []).filter(({ step }) => step?.saved > 0).slice(0, most_steps);
     at("steps").replaceChildren(
       ...worth.map(({ step }) => {
@@ -81,27 +47,38 @@ explore.answer = (() => {
     );
   }
 
+  /** A part of the page that has other content now; what was open in it stays open. */
+  function replace(id, html) {
+    const part = at(id);
+    const title = (details) => details.querySelector("summary").textContent.split(" (")[0];
+    const open = [...part.querySelectorAll("details[open]")].map(title);
+    part.innerHTML = html;
+    for (const details of part.querySelectorAll("details")) details.open ||= open.includes(title(details));
+    marti.sorting.ready(part);
+  }
+
   return {
-    drawn,
     shown,
-    show_helps,
     make: (keys) => (units = keys.units),
     /** `base`: figures of the configuration itself. */
-    show(answer, base) {
-      for (const id of ["answer", "shares", "lost"]) at(id).classList.toggle("old", "error" in answer);
-      if ("error" in answer) {
-        at("state").textContent = `This machine cannot be: ${answer.error}`;
-        return;
-      }
-      at("answer").textContent = line(answer.figures, base);
-      const lost = Object.entries(answer.figures).filter(([name]) => name.startsWith("lost_"));
-      bars("shares", answer.figures, "share_", 1);
-      bars("lost", answer.figures, "lost_", Math.max(1e-9, ...lost.map(([, value]) => Math.abs(value))));
+    show({ figures, helps, page }, base) {
+      const [first, ...others] = page.answer;
+      say([first, ...change(figures, base), ...others], false);
+      show_helps(helps);
+      document.querySelector(".about").textContent = page.about;
+      marti.charts.data.about = page.about;
+      replace("machine-tables", page.sections.tables);
+      replace("machine-source", page.sections.provenance);
+      if (page.charts.length) marti.charts.show(at("machine-charts"), page.charts, page.sections.charts);
+    },
+    /** Says why there is no such machine; the page keeps showing the one before. */
+    refuse(error) {
+      at("state").textContent = `This machine cannot be: ${error}`;
+      document.documentElement.classList.add("old");
     },
     /** A frame time by the model, shown until the exact answer is there; what else is shown is of the machine before. */
     modelled({ end, end_of_one, packets, of_packets }) {
-      at("answer").textContent = `frame about ${time(end)}, speed-up about ${(end_of_one / end).toPrecision(2)}: modelled, from ${packets} of ${of_packets} packets`;
-      for (const id of ["answer", "shares", "lost"]) at(id).classList.add("old");
+      say([`A frame takes about ${time(end)}, speed-up about ${(end_of_one / end).toPrecision(2)}: modelled, from ${packets} of ${of_packets} packets.`], true);
       show_helps(null);
     },
     waiting: (text) => (at("state").textContent = text),

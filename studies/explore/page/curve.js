@@ -3,11 +3,13 @@
 
 explore.curve = (() => {
   const { element, of, scaled } = explore.controls;
-  const { drawn, shown } = explore.answer;
+  const { shown } = explore.answer;
   const at = (id) => document.getElementById(id);
   const figures = ["end", "speed_up", "efficiency", "hit_ratio", "interconnect_utilisation", "bank_utilisation"];
   const columns = ["end", "speed_up", "efficiency", "hit_ratio", "interconnect_utilisation"];
   const most_values = 64;
+  const chart = marti.charts.charts.get("explored_curve");
+  let units = {};  // of the figures, by their names
 
   const value_of = (settings, name) => settings[name] ?? of(name).own;
 
@@ -34,46 +36,37 @@ explore.curve = (() => {
     return settings;
   };
 
-  /** Round numbers from 0 to at most `most`, about four steps: 1, 2 or 5 times a power of ten apart. */
-  function ticks(most) {
-    const exact = most / 4;
-    const power = 10 ** Math.floor(Math.log10(exact));
-    const step = [1, 2, 5, 10].find((times) => times * power >= exact * (1 - 1e-9)) * power;
-    return Array.from({ length: Math.floor(most / step + 1e-9) + 1 }, (_, i) => i * step);
-  }
-
+  /** The chart's rows, in the units of its axis. */
   function draw(state) {
     const axis = axis_of(state);
     const figure = state.figure || "end";
     const values = values_of(state);
     const answers = values.map((value) => explore.server.known(point(state, value)));
-    const known = answers.map((answer) => answer?.figures?.[figure]);
-    const most = Math.max(1e-300, ...known.filter((value) => value !== undefined));
-    const [width, height, left, bottom] = [640, 240, 80, 40];
-    const x = (i) => left + (values.length < 2 ? 0 : (i * (width - left - 20)) / (values.length - 1));
-    const y = (value) => height - bottom - (value / most) * (height - bottom - 20);
-    const chart = drawn("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${figure} along ${axis}` });
-    chart.append(
-      ...ticks(most).flatMap((value) => [
-        drawn("line", { x1: left - 5, y1: y(value), x2: width, y2: y(value) }),
-        drawn("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end", class: "tick" }, value ? shown(figure, value) : "0"),
-      ]),
-      drawn("path", { d: known.map((value, i) => (value === undefined ? "" : `${i && known[i - 1] !== undefined ? "L" : "M"}${x(i)} ${y(value)}`)).join(" ") }),
-    );
-    values.forEach((value, i) => {
-      chart.append(drawn("text", { x: x(i), y: height - 18, "text-anchor": "middle" }, value));
-      if (known[i] === undefined) return;
-      const here = value === value_of(state.settings, axis);
-      const mark = drawn("circle", { cx: x(i), cy: y(known[i]), r: here ? 7 : 5, class: here ? "here" : "", "data-at": value, "data-value": known[i] });
-      mark.append(drawn("title", {}, `${axis} ${value}: ${figure} ${shown(figure, known[i])}`));
-      mark.addEventListener("click", () => explore.state.set({ [axis]: value === of(axis).own ? null : value }));
-      chart.append(mark);
+    const figure_of = (answer) => answer?.figures?.[figure] ?? null;
+    const time = units[figure] === "ps";
+    const { encoding, data } = chart.spec;
+    Object.assign(encoding.x, { title: axis, scale: { domain: values } });
+    encoding.y.title = figure.replaceAll("_", " ") + (time ? ", ms" : "");
+    encoding.y.axis = units[figure] === "fraction" ? { format: ".3~%" } : {};
+    data.values = values.map((value, ordinal) => {
+      const found = figure_of(answers[ordinal]);
+      const height = found !== null && time ? found * 1e-9 : found;
+      return { ordinal, value, height, figure: shown(figure, found), here: value === value_of(state.settings, axis) };
     });
-    at("curve").replaceChildren(chart);
+    marti.charts.update(chart.name);
     const refused = answers.map((answer, i) => answer && "error" in answer && `${values[i]}: ${answer.error}`).filter(Boolean);
     const missing = answers.filter((answer) => !answer).length;
     at("curve-state").textContent = missing ? `${missing} of ${values.length} machines are still to be simulated` : refused.join("; ");
   }
+
+  /** A click on a point goes to its machine. */
+  marti.explorer = {
+    chooseOrdinal(ordinal) {
+      const axis = axis_of(explore.state.now);
+      const value = values_of(explore.state.now)[ordinal];
+      explore.state.set({ [axis]: value === of(axis).own ? null : value });
+    },
+  };
 
   function pins(state) {
     const rows = [["as it is set", state.settings], ["configuration", {}], ...state.pins.map((pin, i) => [`pinned ${i + 1}`, pin])];
@@ -104,6 +97,7 @@ explore.curve = (() => {
     axis_of,
     values_of,
     make(keys) {
+      units = keys.units;
       for (const key of keys.controls) {
         if (!key.list && key.type !== "text") {
           at("axis").append(element("option", { value: key.name, textContent: key.name }));
@@ -119,7 +113,7 @@ explore.curve = (() => {
       at("axis").value = axis_of(state);
       at("figure").value = state.figure || "end";
       if (document.activeElement !== at("values")) at("values").value = values_of(state).join(", ");
-      draw(state);
+      if (chart) draw(state);
       pins(state);
     },
     /** The machines that are shown and may still be to be simulated. */

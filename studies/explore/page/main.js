@@ -4,7 +4,6 @@
 (async () => {
   const { server, state, background, controls, answer, curve, save } = explore;
   const keys = await server.keys();
-  document.getElementById("what").textContent = `${keys.file}, ${keys.scene}`;
   const patience = 150;  // ms
   const model_after = 80;  // ms, so that there is a figure within the patience
   const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
@@ -15,7 +14,8 @@
   function more(now) {
     const helps = async () => {
       const found = await server.helps(now.settings);
-      if (found && !("error" in found)) answer.show_helps(found.helps);
+      const still = state.text(now.settings) === state.text(state.now.settings);
+      if (found?.page && still) answer.show(found, server.known({})?.figures);
       return found;
     };
     const one = (settings) => async () => {
@@ -73,8 +73,8 @@
     if (!found) return;
     const took = performance.now() - begun;
     answer.waiting(before ? "exact; simulated before" : `exact; answered in ${Math.round(took)} ms`);
-    answer.show(found, server.known({})?.figures);
-    answer.show_helps(null);
+    if ("error" in found) answer.refuse(found.error);
+    else answer.show(found, server.known({})?.figures);
     controls.judge(found);
     explore.answered = { settings: now.settings, took, answer: found };  // read by tests
     if (mine === asked && !("error" in found)) {

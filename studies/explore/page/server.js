@@ -4,6 +4,7 @@
 explore.server = (() => {
   const kept = new Map();  // answers by kind and settings
   const most_kept = 2000;
+  const most_pages = 64;  // that are kept with all that the page shows of a machine
 
   async function answer_to(path, content) {
     const response = await fetch(path, {
@@ -17,21 +18,22 @@ explore.server = (() => {
   }
   const post = async (path, content) => (await answer_to(path, content))?.json() ?? null;
 
-  /** What the page uses of a result. */
-  const part_of = (result) =>
-    "error" in result
-      ? result
-      : { figures: result.figures.machine, keys: result.config.keys, helps: result.machine.what_helps };
+  /** What the page uses of an answer. */
+  const part_of = ({ result, page, ...refused }) =>
+    result ? { figures: result.figures.machine, keys: result.config.keys, helps: result.machine.what_helps, page } : refused;
 
   function keep(name, answer) {
     if (kept.size >= most_kept) kept.delete(kept.keys().next().value);
+    kept.delete(name);
     kept.set(name, answer);
+    const pages = [...kept.values()].filter(({ page }) => page);
+    if (pages.length > most_pages) pages[0].page = null;
   }
 
   /** The answer for these settings; null when a newer request has taken its place. */
   async function ask(path, settings, background) {
     const name = `${path}?${explore.state.text(settings)}`;
-    if (!kept.has(name)) {
+    if (!kept.has(name) || (!background && kept.get(name).page === null)) {
       const result = await post(path, { settings, background });
       if (result === null) return null;
       keep(name, part_of(result));

@@ -45,6 +45,7 @@ explore.state = (() => {
   const tell = (shared) => listeners.forEach((listener) => listener(now, shared));
 
   addEventListener("hashchange", () => {
+    if (location.hash && !location.hash.includes("=")) return; // a part of the page
     now = parse(location.hash);
     written = { what: "", when: -Infinity };
     tell(true);

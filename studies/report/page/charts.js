@@ -4,6 +4,7 @@
 marti.charts = (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const charts = new Map(data.charts.map((chart) => [chart.name, chart]));
+  const shapes = new Map();  // of the specifications that are drawn, by name
 
   /** Vega without eval: expressions are interpreted, as the page's policy wants it. */
   function makeView(spec, config, options) {
@@ -29,9 +30,15 @@ marti.charts = (() => {
 
   /** What the reader has chosen in a chart's lists is chosen in another view of it, too. */
   function choose(chart, view) {
-    const shown = marti.views[chart.name];
-    for (const { name } of (shown && chart.spec.params) || []) view.signal(name, shown.signal(name));
+    const other = marti.views[chart.name];
+    for (const { name, bind } of (other && chart.spec.params) || []) {
+      const chosen = other.signal(name);
+      if (bind?.options?.includes(chosen) ?? true) view.signal(name, chosen);
+    }
   }
+
+  /** What of a chart wants it drawn anew when it changes. */
+  const shapeOf = (spec) => JSON.stringify({ ...spec, data: null });
 
   async function draw(name) {
     const chart = charts.get(name);
@@ -48,6 +55,7 @@ marti.charts = (() => {
       if (ordinal !== undefined) marti.explorer?.chooseOrdinal(ordinal);
     });
     marti.views[name] = view;
+    shapes.set(name, shapeOf(chart.spec));
     await view.runAsync();
   }
 
@@ -59,6 +67,40 @@ marti.charts = (() => {
     const sets = { rows: spec.data.values, ...spec.datasets };
     for (const set of changed) view.data(set, sets[set].map((row) => vega.ingest({ ...row })));
     await view.runAsync();
+  }
+
+  /** Shows the chart's specification as it is now, drawn anew only where more than its rows has changed. */
+  async function update(name) {
+    const chart = charts.get(name);
+    chart.changed = ["rows"];
+    await (marti.views[name] && shapes.get(name) === shapeOf(chart.spec) ? change(name) : draw(name));
+  }
+
+  const shown = new Map();  // the names of the charts that are in a place now
+
+  /** Puts these charts into `place`, those in sight first; `html` has places for them. A newer call ends an older one. */
+  async function show(place, list, html) {
+    const names = list.map(({ name }) => name);
+    const before = shown.get(place) ?? [];
+    shown.set(place, names);
+    if (names.join() !== before.join()) {
+      for (const name of before) {
+        marti.views[name]?.finalize();
+        delete marti.views[name];
+        charts.delete(name);
+      }
+      place.innerHTML = html;
+    }
+    for (const chart of list) charts.set(chart.name, chart);
+    const inSight = (name) => {
+      const { top, bottom } = document.getElementById(`chart-${name}`).getBoundingClientRect();
+      return bottom > 0 && top < innerHeight;
+    };
+    const first = names.filter(inSight);
+    for (const name of [...first, ...names.filter((name) => !first.includes(name))]) {
+      if (shown.get(place) !== names) return;
+      await tried(name, update);
+    }
   }
 
   function save(name, type, text) {
@@ -104,17 +146,20 @@ marti.charts = (() => {
     else saveSvg(chart);
   });
 
+  /** Does it with the chart, and lets the reader do something. */
+  async function tried(name, what) {
+    try {
+      await what(name);
+    } catch (error) {
+      document.getElementById(`chart-${name}`).textContent = `This chart could not be drawn: ${error.message}`;
+      console.error(name, error);
+    }
+    await new Promise((resolve) => setTimeout(resolve, 0));
+  }
+
   /** One after the other, so that the first is there soon. */
   async function drawAll() {
-    for (const name of charts.keys()) {
-      try {
-        await draw(name);
-      } catch (error) {
-        document.getElementById(`chart-${name}`).textContent = `This chart could not be drawn: ${error.message}`;
-        console.error(name, error);
-      }
-      await new Promise((resolve) => setTimeout(resolve, 0));
-    }
+    for (const name of charts.keys()) await tried(name, draw);
   }
 
   let busy = Promise.resolve();
@@ -130,5 +175,5 @@ marti.charts = (() => {
       }
     }, 200);
   });
-  return { data, charts, draw, change, redraw, csv, save };
+  return { data, charts, draw, change, update, show, redraw, csv, save };
 })();

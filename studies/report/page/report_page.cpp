@@ -60,10 +60,26 @@ std::string report_page(const ReportData& report, std::span<const Script> script
   return report_page(report, page_sections(report), scripts);
 }
 
+Json page_parts(const ReportData& report) {
+  Json parts = data_of(report);
+  parts["about"] = report.about;
+  parts["answer"] = report.answer;
+  for (const PageSection& section : page_sections(report)) {
+    parts["sections"][section.id] = section.html;
+  }
+  return parts;
+}
+
 std::string report_page(const ReportData& report, std::span<const PageSection> parts,
-                        std::span<const Script> scripts) {
+                        std::span<const Script> scripts, const std::optional<LivePage>& live) {
   std::string policy = "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; style-src" +
-                       source_of(report_page_css()) + "; script-src";
+                       source_of(report_page_css());
+  std::string style(report_page_css().text);
+  if (live) {
+    policy += source_of(live->style) + "; connect-src 'self'";
+    style += "</style>\n<style>" + std::string(live->style.text);
+  }
+  policy += "; script-src";
   std::vector<Script> all(scripts.begin(), scripts.end());
   all.insert(all.end(), {report_chart_style_js(), report_theme_js(), report_tooltip_js(), report_charts_js(),
                          report_sorting_js()});
@@ -73,6 +89,9 @@ std::string report_page(const ReportData& report, std::span<const PageSection> p
                            report_chosen_point_js(), report_controls_js(), report_explorer_js()});
   }
   all.push_back(report_main_js());
+  if (live) {
+    all.insert(all.end(), live->scripts.begin(), live->scripts.end());
+  }
   std::string script_elements;
   for (const Script& script : all) {
     policy += source_of(script);
@@ -92,9 +111,10 @@ std::string report_page(const ReportData& report, std::span<const PageSection> p
                {"title", html_text(report.title)},
                {"about", report.about.empty() ? std::string()
                                               : "<p class=\"about\">" + html_text(report.about) + "</p>\n"},
-               {"style", std::string(report_page_css().text)},
+               {"style", style},
                {"contents", contents},
                {"sections", sections},
+               {"complete", live ? "" : " This file is complete: it loads nothing."},
                {"data", script_json(data_of(report))},
                {"scripts", script_elements}});
 }

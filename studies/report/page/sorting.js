@@ -36,12 +36,16 @@ marti.sorting = (() => {
     return !Number.isNaN(number) ? number : textContent === "" ? null : textContent;
   }
 
-  for (const heading of document.querySelectorAll("table[data-sorted] th")) {
-    listen(heading, (direction) => {
-      const body = heading.closest("table").tBodies[0];
-      body.append(...sorted([...body.rows], (row) => keyOf(row, heading.cellIndex), direction));
-      mark(heading, direction);
-    });
+  /** Has the headings of all tables below the element sort them. */
+  function ready(element) {
+    for (const heading of element.querySelectorAll("table[data-sorted] th")) {
+      listen(heading, (direction) => {
+        const body = heading.closest("table").tBodies[0];
+        body.append(...sorted([...body.rows], (row) => keyOf(row, heading.cellIndex), direction));
+        mark(heading, direction);
+      });
+    }
   }
-  return { sorted, listen, mark };
+  ready(document);
+  return { sorted, listen, mark, ready };
 })();

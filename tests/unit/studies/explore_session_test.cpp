@@ -16,6 +16,8 @@
 #include "studies/explore/turns.h"
 #include "studies/keys/price_keys.h"
 #include "studies/keys/setting_value.h"
+#include "studies/report/plots/vega_bundle.h"
+#include "studies/report/read/read_report.h"
 #include "studies/run/run_result.h"
 #include "studies/show/result_json.h"
 #include "tests/support/temporary_directory.h"
@@ -103,6 +105,34 @@ TEST_F(Explored, EveryAnswerIsThatOfARun) {
       EXPECT_EQ(nlohmann::json::parse(answer)["error"], expected);
     }
   }
+}
+
+// What the page shows of it is the report of the result.
+TEST_F(Explored, TheAnswerIsShownAsItsReport) {
+  const Session session(file_, {});
+  const Settings settings = {{"machine.nodes", "7"}};
+  for (const Measuring what_helps : {Measuring::none, Measuring::within_budget}) {
+    const std::string answer = session.answer(settings, what_helps);
+    const auto shown = nlohmann::ordered_json::parse(session.shown(settings, what_helps));
+    EXPECT_EQ(shown["result"], nlohmann::ordered_json::parse(answer));
+    const report::ReportData report =
+        report::report_of_run(tables::RunJson(nlohmann::ordered_json::parse(answer), "answer"));
+    EXPECT_EQ(shown["page"]["answer"], report.answer);
+    std::vector<std::string> charts;
+    for (const report::ReportChart& chart : report.charts) {
+      charts.push_back(chart.name);
+      EXPECT_NE(shown["page"]["sections"]["charts"].get<std::string>().find("\"chart-" + chart.name + "\""),
+                std::string::npos);
+    }
+    std::vector<std::string> names;
+    for (const auto& chart : shown["page"]["charts"]) {
+      names.push_back(chart["name"]);
+    }
+    EXPECT_EQ(names, report::have_vega_scripts() ? charts : std::vector<std::string>());
+    const std::string tables = shown["page"]["sections"]["tables"];
+    EXPECT_NE(tables.find("Figures of the run"), std::string::npos) << tables.substr(0, 500);
+  }
+  EXPECT_EQ(refused_key(session.shown({{"machine.nodes", "0"}}, Measuring::none)), "machine.nodes");
 }
 
 // A later machine walks the log that was stripped for one before it.
