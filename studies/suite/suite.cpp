@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/config_errors.h"
 #include "sim/error.h"
 #include "sim/files.h"
 #include "sim/shown.h"
@@ -33,19 +34,28 @@ const sim::Schema& suite_schema() {
   return schema;
 }
 
-/// The scenes as an axis, in the form of --axis; a quotation mark stands twice.
-std::string axis_of(const SuiteFile& suite) {
-  std::string axis;
+sweep::AxisArgument axis_of(const SuiteFile& suite) {
+  sweep::AxisArgument axis{*suite_schema().find("scene.source"), {}};
   for (const SuiteScene& scene : suite.scenes) {
     if (scene.missing.empty()) {
-      std::string quoted;
-      for (const char c : scene.source) {
-        quoted += c == '"' ? "\"\"" : std::string(1, c);
-      }
-      axis += (axis.empty() ? "scene.source=\"" : ",\"") + quoted + "\"";
+      axis.steps.push_back({axis.key, {scene.source}, scene.line, {}});
     }
   }
   return axis;
+}
+
+/// The plan of a suite; of a fault of a scene the message says its name.
+sweep::SweepPlan plan_over(const sweep::AxisArgument& scenes, sim::Config& config, const SuiteFile& suite) {
+  try {
+    return sweep::plan_sweep(config, {}, nullptr, {&scenes, 1});
+  } catch (const sim::UserError& error) {
+    const auto scene = std::ranges::find(suite.scenes, error.place().line, &SuiteScene::line);
+    if (scene == suite.scenes.end()) {
+      throw;
+    }
+    throw sim::UserError(sim::place_in_file(config.name(), scene->line, "suite.scene " + scene->name),
+                         std::string(error.what()).substr(error.place().text.size() + 2));
+  }
 }
 
 std::string missing_text(const SuiteFile& suite) {
@@ -63,11 +73,11 @@ sweep::SweepPlan plan_of(sim::Config& config, const SuiteFile& suite) {
   if (config.given("scene.source")) {
     config.fail("scene.source", "a suite has its scenes in [[suite.scene]]; leave it out");
   }
-  const std::vector<std::string> axes = {axis_of(suite)};
-  if (axes.front().empty()) {
+  const sweep::AxisArgument scenes = axis_of(suite);
+  if (scenes.steps.empty()) {
     throw sim::UserError(suite.place, "none of the suite's scenes is there");
   }
-  sweep::SweepPlan plan = sweep::plan_sweep(config, axes);
+  sweep::SweepPlan plan = plan_over(scenes, config, suite);
   const auto point = std::ranges::find(plan.axes, "point");
   const auto at = static_cast<std::size_t>(point - plan.axes.begin());
   const auto is_baseline = [&](const sweep::SweepPoint& each) {

@@ -68,6 +68,7 @@ class SuiteReader {
                  "must have 1 to 60 printable ASCII characters without quotation marks and backslashes");
     }
     scene.source = source_of(texts);
+    scene.line = texts.entry("source").line;
     scene.found = texts.text_or_none("found");
     static_cast<void>(texts.text_or_none("licence"));
     const std::string sha256 = texts.text_or_none("sha256");

@@ -15,6 +15,7 @@ struct SuiteScene {
   std::string source;   ///< from any directory (scenes::source_from)
   std::string found;    ///< where it can be found; may be empty
   std::string missing;  ///< why it is left out; empty: it is there
+  int line = 0;         ///< of the file, of its source
 };
 
 struct SuiteFile {

@@ -111,6 +111,8 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
   std::optional<SweepStore> store;
   WorkDone done;
+  // SQLite has files beside a store that is open, which only the last words below close.
+  std::optional<host::SignalsHeld> held(std::in_place);
   {
     const host::AtSignal unlocked(unlock);
     try {
@@ -120,6 +122,9 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
         remove_if_empty(nullptr, report.store);
       }
       throw;
+    }
+    if (!parts.empty()) {
+      held.reset();  // they may take long
     }
     for (const std::filesystem::path& part : parts) {
       store->merge(part);
@@ -146,6 +151,7 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
           stderr, "marti: interrupted: %zu of %zu machines are saved in %s; the same command does the rest\n",
           saved, plan.machines.size(), report.store.c_str());
     });
+    held.reset();
     const TracedFrame last = time_machines(plan, done, limit, threads_of(options), results);
     if (!options.share || report.store.filename() == tables::database_name) {
       advise(

@@ -104,6 +104,16 @@ TEST_F(SuiteCommand, ComparesEachSceneAndGoesOn) {
   EXPECT_TRUE(says(suite(), "all of it was there already"));
 }
 
+// Also of a scene that one could take for another by its source.
+TEST_F(SuiteCommand, SaysWhichSceneIsAtFault) {
+  write(directory.path() / "bad.obj", "v 0 0 zero\n");
+  write(config, scenes + "\n[[suite.scene]]\nname = \"the bad one\"\nsource = \"bad.obj\"\n" + machines);
+  const Outcome outcome = suite();
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(says(outcome, "suite.toml:20: suite.scene the bad one: "));
+  EXPECT_TRUE(says(outcome, "bad.obj:1: 'zero' is no number (the point "));
+}
+
 TEST_F(SuiteCommand, RefusesWhatIsNoSuite) {
   const auto refusal = [&](const std::string& text) {
     write(config, text);

@@ -124,6 +124,26 @@ INSTANTIATE_TEST_SUITE_P(Signals, SweepInterrupted,
                          testing::Values(std::tuple(SIGINT, "1GiB"), std::tuple(SIGTERM, "1GiB"),
                                          std::tuple(SIGINT, "1MiB")));
 
+// However soon a signal comes, the store is there alone, whole, or not at all.
+TEST(SweepEnd, AnEarlySignalLeavesNothingBesideTheStore) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, long_sweep);
+  int early = 0;
+  for (int round = 0; round < 12; ++round) {
+    const fs::path out = directory.path() / std::to_string(round);
+    Started program(arguments(config, out, {"--threads", "1"}), directory.path() / "said");
+    while (!fs::exists(out / "results.sqlite") && !program.ended()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(round));
+    program.send(SIGINT);
+    early += program.wait() == 128 + SIGINT ? 1 : 0;
+    EXPECT_LE(names_in(out).size(), 1U) << "after " << round << " ms";
+  }
+  EXPECT_GT(early, 0);
+}
+
 TEST(SweepEnd, TwoAtOnceOnOneStoreAreRefused) {
   const TemporaryDirectory directory;
   const fs::path config = directory.path() / "sweep.toml";

@@ -51,13 +51,14 @@ Outcome read_outcome(const sim::Config& config, sim::WorkMeter* meter) {
 
 class Planner {
  public:
-  Planner(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter)
+  Planner(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter,
+          std::span<const AxisArgument> more)
       : config_(config),
         meter_(meter),
         prices_(keys::read_prices(config)),
         filter_(config.text("sweep.filter")),
         skip_invalid_(config.boolean("sweep.skip_invalid")),
-        table_(read_sweep_table(config, axes)),
+        table_(read_sweep_table(config, axes, more)),
         points_(config, table_),
         used_(config.schema().keys().size()) {
     refuse_records(config);
@@ -204,7 +205,8 @@ class Planner {
       const std::uint64_t group = base_group(points[i]);
       if (!bases_.contains(group)) {
         // Only the group's first point reads the base; that point could not be built, so it is read here.
-        enter_base(group, read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
+        enter_base(points[i], group,
+                   read[i].wants_base ? std::move(read[i].base) : read_base(points[i], point));
       }
       if (const Base& base = bases_.at(group); base.machine) {
         enter_point(points[i], point, *base.machine);
@@ -224,13 +226,22 @@ class Planner {
     plan_.skipped.push_back({points_.text(point), error.what() + std::string(of_base ? " (its base)" : "")});
   }
 
-  void enter_base(std::uint64_t group, Outcome base) {
+  // A scene that is a file may be at fault, of which the point says the name.
+  std::size_t enter_machine(std::uint64_t point, ReadPoint& read) {
+    try {
+      return found_.enter(read);
+    } catch (const sim::UserError& error) {
+      throw sim::UserError(error.what() + (" (the point " + sim::shown(points_.text(point))) + ")", error);
+    }
+  }
+
+  void enter_base(std::uint64_t point, std::uint64_t group, Outcome base) {
     if (!base.read) {
       bases_.emplace(group, Base{std::nullopt, base.error});
       return;
     }
     note_use(base.read->config);
-    bases_.emplace(group, Base{found_.enter(*base.read), {}});
+    bases_.emplace(group, Base{enter_machine(point, *base.read), {}});
   }
 
   void enter_point(std::uint64_t number, ReadPoint& read, std::size_t base) {
@@ -246,7 +257,7 @@ class Planner {
     for (const std::size_t key : points_.keys()) {
       point.values.push_back(points_.value(number, key));
     }
-    point.machine = found_.enter(read);
+    point.machine = enter_machine(number, read);
     point.base = base;
     point.cost = keys::cost_of(prices_, read.machine);
     found_.used_by_point(point.machine, plan_.points.size());
@@ -344,8 +355,9 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
   return points * (machine + 2 * known + point + 4 * sizeof(std::size_t));
 }
 
-SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter) {
-  return Planner(config, axes, meter).plan();
+SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter,
+                     std::span<const AxisArgument> more) {
+  return Planner(config, axes, meter, more).plan();
 }
 
 }  // namespace marti::studies::sweep

@@ -11,6 +11,7 @@
 #include "sim/config.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/keys/machine_cost.h"
+#include "studies/sweep/plan/axis_values.h"
 #include "studies/sweep/plan/question.h"
 #include "studies/sweep/plan/shared_settings.h"
 
@@ -90,9 +91,10 @@ struct SweepPlan {
 /// is part of the frame's key. Throws UserError naming file, line and key; for a point whose machine cannot
 /// be built, of the first such point in order, with what the point gives; for a plan beyond
 /// host_machine.memory_limit, before its points are read. `meter` may stop the planning and is that of its
-/// frames; null: nobody waits.
+/// frames; null: nobody waits. `more`: axes like those of the command line, whose steps know where they are
+/// from.
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {},
-                                   sim::WorkMeter* meter = nullptr);
+                                   sim::WorkMeter* meter = nullptr, std::span<const AxisArgument> more = {});
 
 /// What is known of a plan before it runs: what its store holds already, and what it needs.
 struct SweepOutlook {

@@ -25,9 +25,12 @@ class TableReader {
  public:
   explicit TableReader(const sim::Config& config) : config_(config) {}
 
-  SweepTable read(std::span<const std::string> arguments) {
+  SweepTable read(std::span<const std::string> arguments, std::span<const AxisArgument> more) {
     for (const std::string& argument : arguments) {
-      add_argument(argument);
+      add_argument(read_axis_argument(config_, argument), "--axis " + sim::shown(argument));
+    }
+    for (const AxisArgument& axis : more) {
+      add_argument(axis, config_.name());
     }
     const DocumentValue::Table& sweep = config_.free_section("sweep");
     for (const DocumentEntry& entry : sweep) {
@@ -53,10 +56,9 @@ class TableReader {
     sim::fail_at(config_, line, key, message);
   }
 
-  void add_argument(const std::string& argument) {
-    AxisArgument given = read_axis_argument(config_, argument);
+  void add_argument(AxisArgument given, const std::string& where) {
     const std::string& name = config_.schema().names()[given.key];
-    const sim::Place place{"--axis " + sim::shown(argument), {}, 0, name};
+    const sim::Place place{where, {}, 0, name};
     if (!sweepable(name)) {
       throw sim::UserError(place, std::string(not_sweepable));
     }
@@ -271,8 +273,9 @@ class TableReader {
 
 }  // namespace
 
-SweepTable read_sweep_table(const sim::Config& config, std::span<const std::string> arguments) {
-  return TableReader(config).read(arguments);
+SweepTable read_sweep_table(const sim::Config& config, std::span<const std::string> arguments,
+                            std::span<const AxisArgument> more) {
+  return TableReader(config).read(arguments, more);
 }
 
 }  // namespace marti::studies::sweep

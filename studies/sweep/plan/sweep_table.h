@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/config.h"
+#include "studies/sweep/plan/axis_values.h"
 
 namespace marti::studies::sweep {
 
@@ -34,10 +35,11 @@ struct SweepTable {
 };
 
 /// Reads what the free section "sweep" holds, and the axes of the command line (axis_values.h), which come
-/// first and replace axes of the file over their keys. Throws UserError naming file, line and key: for an
-/// unknown or repeated key, one that no sweep may change, a wrong value, an empty axis, too many points, and
-/// where there is no axis at all.
+/// first and replace axes of the file over their keys, as do `more` of them. Throws UserError naming file,
+/// line and key: for an unknown or repeated key, one that no sweep may change, a wrong value, an empty axis,
+/// too many points, and where there is no axis at all.
 [[nodiscard]] SweepTable read_sweep_table(const sim::Config& config,
-                                          std::span<const std::string> arguments = {});
+                                          std::span<const std::string> arguments = {},
+                                          std::span<const AxisArgument> more = {});
 
 }  // namespace marti::studies::sweep
