@@ -33,16 +33,8 @@ explore.save = (() => {
     document.getElementById(id).href = `data:text/plain;charset=utf-8,${encodeURIComponent(text)}`;
   };
 
-  /** Has the browser save the page of a report. */
-  function save_report(page) {
-    const address = URL.createObjectURL(new Blob([page], { type: "text/html" }));
-    const link = Object.assign(document.createElement("a"), { href: address, download: "explored.html" });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(address), 60000);
-  }
-
   return {
-    report: save_report,
+    report: (page) => marti.charts.save("explored.html", "text/html", page),
     show(keys, answer, state) {
       offer("save", configuration(keys, answer));
       offer("save-sweep", sweep(keys, answer, state));

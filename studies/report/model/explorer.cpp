@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "memory/record_kind.h"
+#include "processors/cost/accounting.h"
 #include "sim/mapped.h"
 #include "sim/rounded.h"
 #include "studies/figures/counted_figures.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/report/model/answer_text.h"
-#include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/digits.h"
 
 namespace marti::studies::report {
@@ -78,14 +78,16 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
       fields.push_back({name, "us", ps_a_us});
     }
   }
-  for (const std::string_view group : cycle_group_names) {
-    fields.push_back({"part_" + std::string(group)});
+  for (const std::string_view activity : processors::cost::activity_names) {
+    fields.push_back({"share_" + std::string(activity)});
   }
   fields.push_back({"bound", "ms", ps_a_ms, false, false, "asymptotic bound"});
   fields.push_back({"saturation", "1", 1.0, false, false, "saturation"});
   std::erase_if(fields, [&](const ExplorerField& field) {
-    return std::ranges::none_of(sweep.points,
-                                [&](const ReportPoint& point) { return point.has(field.name); });
+    const bool share = field.name.starts_with("share_");  // what nodes never do needs no column
+    return std::ranges::none_of(sweep.points, [&](const ReportPoint& point) {
+      return point.has(field.name) && !(share && point.figure(field.name) == 0.0);
+    });
   });
   std::set<std::string, std::less<>> known = {"cost"};  // shown as the price
   for (const ExplorerField& field : fields) {
@@ -101,12 +103,10 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   return fields;
 }
 
-// Prices, bounds, groups of activities and percentiles are not in the catalogue of figures; the report itself
-// works them out.
+// Prices, bounds and percentiles are not in the catalogue of figures; the report itself works them out.
 constexpr std::pair<std::string_view, std::string_view> own_meanings[] = {
     {"bound", "no frame with these counters is shorter"},
     {"saturation", "nodes of a cluster from which on its busiest queue is full"}};
-constexpr std::string_view group_prefix = "part_";
 constexpr std::string_view percentile_part = "_wait_p";
 
 std::string_view own_meaning_of(std::string_view name) {
@@ -120,13 +120,12 @@ std::string_view own_meaning_of(std::string_view name) {
 
 bool is_catalogued(const ExplorerField& field) {
   return field.name != "price" && own_meaning_of(field.name).empty() &&
-         !field.name.starts_with(group_prefix) && field.name.find(percentile_part) == std::string::npos;
+         field.name.find(percentile_part) == std::string::npos;
 }
 
 // Parts of a whole, which people read in percent.
 bool is_share(const ExplorerField& field) {
-  return field.name.starts_with(group_prefix) ||
-         (is_catalogued(field) && figures::figure_named(field.name).unit == "fraction");
+  return is_catalogued(field) && figures::figure_named(field.name).unit == "fraction";
 }
 
 std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
@@ -139,9 +138,7 @@ std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
   if (field.name == "price") {
     return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
   }
-  return field.name.starts_with(group_prefix)
-             ? "share of all nodes' time from 0 to the end of the frame"
-             : "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
+  return "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
 }
 
 Json field_json(const ExplorerField& field, const ReportPoints& sweep) {

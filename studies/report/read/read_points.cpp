@@ -9,7 +9,6 @@
 #include "sim/error.h"
 #include "sim/mapped.h"
 #include "studies/report/model/chart_library.h"
-#include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/point_bounds.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/sweep/plan/axis_text.h"
@@ -94,14 +93,6 @@ void check_axes(const std::filesystem::path& store, const ReportPoints& sweep) {
                         store.string(), axis.name, axis.texts[value]));
       }
     }
-  }
-}
-
-void add_groups(ReportPoint& point) {
-  const std::array<double, cycle_groups> parts =
-      group_cycles([&](std::string_view activity) { return point.figure("share_" + std::string(activity)); });
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    point.figures["part_" + std::string(cycle_group_names[i])] = parts[i];
   }
 }
 
@@ -254,7 +245,6 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
         ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
   }
   for (ReportPoint& point : sweep.points) {
-    add_groups(point);
     if (const std::optional<sweep::SweepRow> row = reader.read_result(point.machine)) {
       add_percentiles(*row, point);
     }

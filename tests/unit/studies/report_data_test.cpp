@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "processors/cost/accounting.h"
 #include "sim/base64.h"
 #include "sim/error.h"
 #include "sim/sha256.h"
 #include "studies/report/model/chart_library.h"
-#include "studies/report/model/cycle_groups.h"
 #include "studies/report/model/result_tables.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/report/model/sweep_report.h"
@@ -298,15 +298,26 @@ TEST(Choose, FindsTheFrontOfEnergyAsBruteForceDoes) {
   }
 }
 
-TEST(CycleGroups, AddUpToAllActivities) {
-  double next = 0.0;
-  double all = 0.0;
-  const auto parts = group_cycles([&](std::string_view) { return all += ++next, next; });
-  double sum = 0.0;
-  for (const double part : parts) {
-    sum += part;
+// The chart adds activities up, and has a colour for each sum: none is left out.
+TEST(ReportCharts, CyclesHaveEveryActivity) {
+  const Json spec = Json::parse(chart_named(report_chart_specifications(), "cycles").json);
+  std::vector<std::string> shares;
+  for (const std::string_view activity : processors::cost::activity_names) {
+    shares.push_back("share_" + std::string(activity));
   }
-  EXPECT_DOUBLE_EQ(sum, all);
+  EXPECT_EQ(spec["usermeta"]["live"]["fields"], Json(shares));
+  EXPECT_EQ(spec["transform"][0]["fold"], Json(shares));
+  const std::string groups = spec["transform"][1]["calculate"];
+  const Json& colours = spec["encoding"]["color"]["scale"];
+  std::set<std::string> named;
+  for (const std::string& share : shares) {
+    const std::size_t at = groups.find(share + ": '");
+    ASSERT_NE(at, std::string::npos) << share;
+    const std::size_t begin = at + share.size() + 3;
+    named.insert(groups.substr(begin, groups.find('\'', begin) - begin));
+  }
+  EXPECT_EQ(named, std::set<std::string>(colours["domain"].begin(), colours["domain"].end()));
+  EXPECT_EQ(colours["domain"].size(), colours["range"].size());
 }
 
 TEST(CsvOfRows, QuotesWhatItHasTo) {
