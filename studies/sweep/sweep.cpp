@@ -161,6 +161,7 @@ void complete(const SweepPlan& plan, const SweepOptions& options, const sim::Mem
           },
           [&](std::size_t machine, const Advice& advice) { results.advised(machine, advice); });
     }
+    held.emplace();  // until the store is closed
   } catch (const sim::UserError& error) {
     clean_up();
     throw sim::UserError(error.what() + (" (" + std::to_string(results.saved())) + " of " +
