@@ -1,6 +1,7 @@
 // The event kernel: hands each pending event, in total order, to the handler of its class.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -59,6 +60,16 @@ class Engine {
   template <class Handler>
   void run_all(Handler& handler);
 
+  /// run_all() for the events before `end` alone.
+  template <class Handler>
+  void run_before(Handler& handler, Ticks end);
+  /// The time of the earliest event that is pending; the largest time where there is none.
+  [[nodiscard]] Ticks next_time() { return queue_.front().time; }
+  /// The place, among all events of a simulation, of what is done in the event that run_before() handles now.
+  /// Where an event has had others of its own time posted that come before it in order, these are handled
+  /// after it all the same, so what counts is the latest in order that was handled at this time.
+  [[nodiscard]] Event turn() const { return {now_, latest_}; }
+
   [[nodiscard]] Ticks now() const { return now_; }
   /// Whether an event is pending.
   [[nodiscard]] bool has_events() const { return !queue_.empty(); }
@@ -98,6 +109,7 @@ class Engine {
   EventQueue queue_;
   std::array<EventHandler*, max_classes> handlers_{};
   Ticks now_ = 0;
+  std::uint64_t latest_ = 0;  // of run_before(): the largest order of the events handled at now_
   std::uint64_t events_ = 0;
 };
 
@@ -127,6 +139,20 @@ void Engine::run_all(Handler& handler) {
       look_ahead(handler_of);
       handler.handle(event);
     }
+  }
+  events_ += events;
+}
+
+template <class Handler>
+void Engine::run_before(Handler& handler, Ticks end) {
+  std::uint64_t events = 0;
+  const auto handler_of = [&handler](const Event& /*event*/) { return &handler; };
+  for (; queue_.front().time < end; ++events) {
+    const Event event = queue_.pop();
+    latest_ = event.time == now_ ? std::max(latest_, event.order) : event.order;
+    now_ = event.time;
+    look_ahead(handler_of);
+    handler.handle(event);
   }
   events_ += events;
 }

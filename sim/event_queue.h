@@ -84,6 +84,9 @@ class EventQueue {
     heap_.look_ahead(later, soon);
   }
 
+  /// The earliest event; Event::never() where there is none.
+  [[nodiscard]] Event front() { return std::min(tree_.front(), std::min(lane_.front(), first_)); }
+
   /// Removes and returns the earliest event. The queue must not be empty.
   Event pop() {
     return next_is_in_tree() ? pop_in_tree() : next_is_in_order() ? pop_in_order() : pop_other();

@@ -82,6 +82,8 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   }
 
   void run_all(sim::Engine& engine) override { engine.run_all(*this); }
+  void run_before(sim::Engine& engine, sim::Ticks end) override { engine.run_before(*this, end); }
+  void grant(std::uint32_t node, const std::optional<Grant>& grant) override { Base::begin(node, grant); }
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();

@@ -6,6 +6,7 @@
 
 #include "processors/node/node_factory.h"
 #include "processors/walk/counted_caches.h"
+#include "sim/error.h"
 
 namespace marti::processors::node {
 
@@ -20,6 +21,23 @@ std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t coun
 
 bool has_context_nodes(const walk::ReplayInput& input) {
   return input.with_contexts || input.config.contexts > 1 || input.config.prefetch.on();
+}
+
+bool can_be_parts(const walk::ReplayInput& input) {
+  return input.config.kind == machine::NodeKind::core && input.tree == nullptr && input.sample == nullptr &&
+         input.observer == nullptr && !has_context_nodes(input) && !walk::needs_counted_caches(input);
+}
+
+void NodeArray::run_before(sim::Engine& /*engine*/, sim::Ticks /*end*/) {
+  throw sim::InternalError("nodes that are not made for it are a part of a machine");
+}
+
+void NodeArray::grant(std::uint32_t /*node*/, const std::optional<Grant>& /*grant*/) {
+  throw sim::InternalError("nodes that do not ask later are given a packet");
+}
+
+void NodeArray::end_not_before(sim::Ticks /*end*/) {
+  throw sim::InternalError("nodes that are no part of a machine end with another part");
 }
 
 std::unique_ptr<NodeArray> make_node_array(const walk::ReplayInput& input, sim::Engine& engine, Host& host) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "memory/interconnect.h"
@@ -36,6 +37,12 @@ class NodeArray : public sim::EventHandler {
   /// Handles all events of `engine`. No limit is needed: each event moves a node or a ray on by at least one
   /// step of a finite log, or is the only one at its node or cluster that finds nothing to do.
   virtual void run_all(sim::Engine& engine) { engine.run(std::numeric_limits<std::uint64_t>::max()); }
+  /// For nodes of a part of a machine (walk::MachinePart): run_all() for the events before `end` alone; the
+  /// answer to a request of a packet, std::nullopt where none was left; and, after the run, when the whole
+  /// machine was done. Only for nodes for which can_be_parts() holds.
+  virtual void run_before(sim::Engine& engine, sim::Ticks end);
+  virtual void grant(std::uint32_t node, const std::optional<Grant>& grant);
+  virtual void end_not_before(sim::Ticks end);
   /// The interconnect of each cluster; set before start().
   virtual void connect(std::vector<memory::Interconnect*> interconnects) = 0;
   /// The client to plug into cluster `cluster`'s interconnect.
@@ -66,6 +73,9 @@ class NodeArray : public sim::EventHandler {
 
 /// The numbers from 0 to count - 1, in an order drawn from `seed` (0: ascending).
 [[nodiscard]] std::vector<std::uint32_t> order_drawn_from(std::uint64_t seed, std::size_t count);
+
+/// Whether the nodes of this machine can be divided into parts.
+[[nodiscard]] bool can_be_parts(const walk::ReplayInput& input);
 
 /// Builds the nodes with the look-up code for the configured caches.
 [[nodiscard]] std::unique_ptr<NodeArray> make_node_array(const walk::ReplayInput& input, sim::Engine& engine,

@@ -32,6 +32,7 @@ class PacketNodes : public NodeArray {
   }
   memory::InterconnectClient& client(std::uint32_t cluster) override { return clients_[cluster]; }
   sim::Ticks end() const override { return end_; }
+  void end_not_before(sim::Ticks end) override { end_ = std::max(end_, end); }
   std::vector<cost::NodeStatistics> statistics() const override {
     return {statistics_.begin(), statistics_.end()};
   }
@@ -162,7 +163,17 @@ class PacketNodes : public NodeArray {
     if (meter_.on()) {
       meter_.end(node, cursor.time, statistics_[node]);
     }
-    const std::optional<Grant> grant = host_.next(node, cursor.time);
+    const std::uint32_t first_node = input_.part == nullptr ? 0 : input_.part->first_node;
+    if (input_.part != nullptr && input_.part->asks_later) {
+      input_.part->requests.push_back({engine_.turn(), node});
+      return;
+    }
+    begin(node, host_.next(first_node + node, cursor.time));
+  }
+
+  // Begins the packet that the node was given, if one was left.
+  void begin(std::uint32_t node, const std::optional<Grant>& grant) {
+    Cursor& cursor = cursors_[node];
     if (!grant) {
       statistics_[node].finish = cursor.time;
       end_ = std::max(end_, cursor.time);

@@ -11,6 +11,7 @@
 #include "processors/replay/energy_counts.h"
 #include "processors/replay/host_bytes.h"
 #include "processors/replay/interval_sampler.h"
+#include "processors/replay/machine_parts.h"
 #include "processors/replay/pipeline.h"
 #include "processors/replay/record_laws.h"
 #include "processors/replay/replay_parts.h"
@@ -146,6 +147,23 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   if (options.observer != nullptr) {
     options.observer->begin(input);
   }
+  const auto complete = [&](MachineResult& result) {
+    result.host = host.statistics();
+    result.packets = packets.size();
+  };
+  const auto check = [&](MachineResult& result) {
+    result.left_out = left_out;
+    result.pixels = pixels_of(packets, log, options.sample);
+    check_conservation(log, config, result);
+    check_bounds(config, result);
+  };
+  if (const auto division =
+          division_of(input, options.threads, options.parts, options.fewest_nodes_of_parts)) {
+    MachineResult result = replay_parts(input, host, *division, options.start_seed);
+    complete(result);
+    check(result);
+    return result;
+  }
   const std::unique_ptr<node::NodeArray> nodes = config.kind == machine::NodeKind::simt
                                                      ? simt::make_simt_nodes(input, engine, host)
                                                      : node::make_node_array(input, engine, host);
@@ -159,8 +177,7 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   }
   const auto result_at = [&](sim::Ticks end) {
     MachineResult result = common_result(config, engine, *nodes, interconnects, layout, end);
-    result.host = host.statistics();
-    result.packets = packets.size();
+    complete(result);
     return result;
   };
   IntervalSampler sampler(options.intervals, engine, *nodes, result_at);
@@ -173,11 +190,8 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
   }
   MachineResult result = result_at(nodes->end());
   result.events -= sampler.events();
-  result.left_out = left_out;
-  result.pixels = pixels_of(packets, log, options.sample);
   result.packet_figures = nodes->packet_figures();
-  check_conservation(log, config, result);
-  check_bounds(config, result);
+  check(result);
   return result;
 }
 

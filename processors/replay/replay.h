@@ -123,12 +123,16 @@ struct ReplayOptions {
   /// Null: nobody asks for intervals; else the replay is one step by step. Same result. `observer` must be
   /// there; not with `stripped` or `sample`.
   const Intervals* intervals = nullptr;
+  /// How many threads may time the machine, in parts, if it has so many nodes (machine_parts.h). Same result.
+  unsigned threads = 1;
+  unsigned parts = 0;  ///< 0: as many as pay
+  std::uint32_t fewest_nodes_of_parts = 1024;
   /// Counts each packet that is handed out; after its stop() the replay throws sim::Stopped at the next one.
   /// Null: nobody waits. Same result.
   sim::WorkMeter* meter = nullptr;
 };
 
-/// Times `config` on `log`. Deterministic, single-threaded; many replays may share one log. Before it
+/// Times `config` on `log`. Deterministic; many replays may share one log. Before it
 /// returns it checks the conservation laws of the result and throws InternalError when one is broken.
 /// Throws UserError for a machine that cannot be built or a time that does not fit.
 [[nodiscard]] MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& config,

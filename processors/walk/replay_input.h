@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "memory/layout.h"
 #include "processors/machine/machine_config.h"
@@ -11,6 +12,7 @@
 #include "processors/program/work_log.h"
 #include "processors/walk/packet_sample.h"
 #include "processors/walk/tree_plan.h"
+#include "sim/event.h"
 #include "sim/time.h"
 
 namespace marti::processors::walk {
@@ -19,6 +21,22 @@ class CauseObserver;
 class KeptVisits;
 class Observer;
 class StrippedLog;
+
+/// A node's request of its next packet.
+struct PacketRequest {
+  sim::Event turn;  ///< when, among all that the machine does (sim::Engine::turn())
+  std::uint32_t node = 0;
+};
+
+/// What distinguishes the nodes of a part of a machine that has an engine of its own. The part's
+/// configuration is that of a machine with so many nodes less, and its nodes are numbered from 0.
+struct MachinePart {
+  std::uint32_t first_node = 0;  ///< the number of its node 0 in the whole machine
+  /// The host answers requests later, because the other parts' requests may come before them: they are left
+  /// in `requests`, and answered by NodeArray::grant().
+  bool asks_later = false;
+  std::vector<PacketRequest> requests{};
+};
 
 /// References to objects that outlive the replay.
 struct ReplayInput {
@@ -43,6 +61,15 @@ struct ReplayInput {
   CauseObserver* causes = nullptr;
   /// Null: visits are planned for this replay alone. Else the tree is given.
   KeptVisits* visits = nullptr;
+  /// Null: the nodes are those of the whole machine.
+  MachinePart* part = nullptr;
+
+  /// All this for another machine.
+  [[nodiscard]] ReplayInput with_config(const machine::MachineConfig& other) const {
+    return {log,         other,        layout,    packets,  node_rank,     step_by_step,
+            tree,        report_built, observer,  stripped, with_contexts, sample,
+            all_packets, line_set,     own_reads, causes,   visits,        part};
+  }
 };
 
 }  // namespace marti::processors::walk

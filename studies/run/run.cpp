@@ -10,6 +10,7 @@
 #include "processors/machine/packets.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/host_bytes.h"
+#include "processors/replay/machine_parts.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
 #include "studies/host/image_file.h"
@@ -135,6 +136,7 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   options.stripped = path || intervals ? nullptr : stripped;  // both need every step in its place
   options.path = path ? &*path : nullptr;
   options.meter = run.meter;
+  options.threads = static_cast<unsigned>(tbb::this_task_arena::max_concurrency());
   const KeptItems& kept = result.frame_config.keep;
   keep(kept, options);
   const processors::program::WorkLog& log = *result.functional.frame.log;
@@ -190,6 +192,16 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
   return stripped;
 }
 
+// What is told while the machine and one node are timed. Only of a machine that takes long it is said why one
+// thread times it.
+std::string timing_of(const processors::machine::MachineConfig& machine) {
+  constexpr std::uint32_t many_nodes = 1024;
+  const char* const why = processors::replay::why_one_thread(machine, 0);
+  return "timing the machine and one node" + (machine.all_nodes() < many_nodes || why == nullptr
+                                                  ? std::string()
+                                                  : std::string(", each on one thread, because ") + why);
+}
+
 // Times the frame on the machine and on one node, at the same time, and derives all other figures. Returns
 // the stripped log of both machines, if they had one.
 std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::RecordConfig& record,
@@ -207,7 +219,7 @@ std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::Reco
     const processors::machine::MachineConfig one_node = processors::machine::one_node_of(result.machine);
     stripped = strip_for_both(result.frame_config, log, result.functional.totals.bytes, result.machine,
                               one_node, options);
-    sim::begin_part(options.meter, "timing the machine and one node", "packets",
+    sim::begin_part(options.meter, timing_of(result.machine), "packets",
                     packets_of(log, result.machine) + packets_of(log, one_node));
     processors::replay::ReplayOptions of_one;
     of_one.meter = options.meter;
