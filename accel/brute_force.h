@@ -30,7 +30,7 @@ class BruteForce {
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
+    Best<Real> best(setup, HitFilter(*triangles_, visitor));
     begin_query(visitor);
     test_list<false>(topology_, *triangles_, 0, setup, best, visitor);
     return best.hit();
@@ -40,7 +40,7 @@ class BruteForce {
   template <class Real = double, class Visitor>
   [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
+    Best<Real> best(setup, HitFilter(*triangles_, visitor));
     begin_query(visitor);
     return test_list<true>(topology_, *triangles_, 0, setup, best, visitor);
   }

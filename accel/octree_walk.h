@@ -144,7 +144,7 @@ inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>&
 #ifdef MARTI_AVX2
   // As four triangles are tested at a time, mailbox look-ups one by one would gain nothing.
   if constexpr (std::is_same_v<Real, double> && View::has_packs && !has_mailboxes<Visitor>) {
-    if (view.packed != nullptr) {
+    if (view.packed != nullptr && !best.filter.on()) {
       return walk_octree_avx2<Any>(view, start, setup, best, visitor);
     }
   }
@@ -155,7 +155,7 @@ inline bool query_octree(const View& view, const Ray& ray, const RaySetup<Real>&
 template <class Real, class View, class Visitor>
 [[nodiscard]] Hit octree_closest(const View& view, const Ray& ray, Visitor& visitor) {
   const RaySetup<Real> setup(ray);
-  Best<Real> best(setup);
+  Best<Real> best(setup, HitFilter(*view.triangles, visitor));
   query_octree<false>(view, ray, setup, best, visitor);
   return best.hit();
 }
@@ -163,7 +163,7 @@ template <class Real, class View, class Visitor>
 template <class Real, class View, class Visitor>
 [[nodiscard]] bool octree_occluded(const View& view, const Ray& ray, Visitor& visitor) {
   const RaySetup<Real> setup(ray);
-  Best<Real> best(setup);
+  Best<Real> best(setup, HitFilter(*view.triangles, visitor));
   return query_octree<true>(view, ray, setup, best, visitor);
 }
 

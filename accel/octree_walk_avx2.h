@@ -158,8 +158,8 @@ inline bool finish_lane(const OctreeView& view, const RaySetup<double>& setup, c
   if (!(std::abs(det) >= sliver_share * edges.products[lane]) || det == 0.0) [[unlikely]] {
     return intersect_primitive(setup, *view.triangles, id, best);
   }
-  return accept(setup, {edges.u[lane], edges.v[lane], edges.w[lane]}, det, edges.depth_a[lane],
-                edges.depth_b[lane], edges.depth_c[lane], id, best);
+  return accept<false>(setup, {edges.u[lane], edges.v[lane], edges.w[lane]}, det, edges.depth_a[lane],
+                       edges.depth_b[lane], edges.depth_c[lane], id, best);
 }
 
 /// test_leaf on packs.
@@ -196,7 +196,7 @@ template <bool Any, class Visitor>
       _mm256_load_si256(reinterpret_cast<const __m256i*>(lane_masks.lanes[bits].data())));
 }
 
-/// walk_octree for doubles.
+/// walk_octree for doubles and triangles without holes: what asks about hits would slow the loop down.
 template <bool Any, class Visitor>
 [[gnu::target("avx2")]] bool walk_octree_avx2(const OctreeView& view, const WalkStart<double>& start,
                                               const RaySetup<double>& setup, Best<double>& best,

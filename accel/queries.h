@@ -16,7 +16,7 @@ class Queries {
   template <class Real = double, class Visitor>
   [[nodiscard]] Hit closest(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
+    Best<Real> best(setup, HitFilter(structure().triangles(), visitor));
     structure().template query<false>(ray, setup, best, visitor);
     return best.hit();
   }
@@ -25,7 +25,7 @@ class Queries {
   template <class Real = double, class Visitor>
   [[nodiscard]] bool occluded(const Ray& ray, Visitor& visitor) const {
     const RaySetup<Real> setup(ray);
-    Best<Real> best(setup);
+    Best<Real> best(setup, HitFilter(structure().triangles(), visitor));
     return structure().template query<true>(ray, setup, best, visitor);
   }
 

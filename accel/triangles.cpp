@@ -46,6 +46,9 @@ TriangleSet::TriangleSet(const scenes::Scene& scene) {
   }
   check_triangles();
   add_quadrics(scene.quadrics);
+  if (CutOuts holes(scene); !holes.empty()) {
+    cut_outs_ = std::make_shared<const CutOuts>(std::move(holes));
+  }
 }
 
 TriangleSet::TriangleSet(std::vector<TriangleCorners> triangles, const std::vector<scenes::Quadric>& quadrics)

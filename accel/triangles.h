@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "accel/cut_outs.h"
 #include "accel/quadric_shape.h"
 #include "scenes/scene.h"
 
@@ -35,7 +37,8 @@ class TriangleSet {
 
   /// Bytes of host memory that the set of a scene's primitives takes.
   [[nodiscard]] static std::uint64_t host_bytes(const scenes::Scene& scene) {
-    return scene.triangles.size() * sizeof(TriangleCorners) + scene.quadrics.size() * sizeof(QuadricShape);
+    return scene.triangles.size() * sizeof(TriangleCorners) + scene.quadrics.size() * sizeof(QuadricShape) +
+           CutOuts::host_bytes(scene);
   }
 
   /// The number of all primitives; ids are below it.
@@ -58,6 +61,8 @@ class TriangleSet {
     const double* p = &triangles_[id][std::size_t{3} * which];
     return {p[0], p[1], p[2]};
   }
+  /// The holes of the triangles; null where none has any.
+  [[nodiscard]] const CutOuts* cut_outs() const { return cut_outs_.get(); }
   /// The tight box of all primitives; empty when there are none.
   [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
 
@@ -67,6 +72,7 @@ class TriangleSet {
 
   std::vector<TriangleCorners> triangles_;
   std::vector<QuadricShape> quadrics_;
+  std::shared_ptr<const CutOuts> cut_outs_;
   scenes::Bounds bounds_;
 };
 

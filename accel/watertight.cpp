@@ -8,6 +8,17 @@ void reject_ray() {
   throw sim::InternalError("a ray's origin and direction must be finite and its direction not zero");
 }
 
+bool HitFilter::passes(std::uint32_t triangle, const std::array<double, 3>& weights) const {
+  if (!cut_outs_->asks(triangle)) {
+    return true;
+  }
+  const AnyHit hit = cut_outs_->ask(triangle, weights);
+  if (listener_ != nullptr) {
+    listener_->any_hit(hit);
+  }
+  return hit.counts;
+}
+
 namespace {
 
 // Kahan: a * b - c * d with an error of at most 1.5 ulp, so the sign is exact and zero means zero.

@@ -21,8 +21,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "accel/counted.h"
+#include "accel/cut_outs.h"
 #include "accel/ray.h"
 #include "accel/real.h"
 #include "accel/triangles.h"
@@ -61,6 +63,26 @@ struct EdgeFunctions {
   Real w;
 };
 
+/// Says whether a hit of a triangle counts, and tells a visitor that wants to know.
+class HitFilter {
+ public:
+  HitFilter() = default;
+  /// `visitor`: that of the walk.
+  template <class Visitor>
+  HitFilter(const TriangleSet& triangles, Visitor& visitor) : cut_outs_(triangles.cut_outs()) {
+    if constexpr (std::is_base_of_v<AnyHitListener, Visitor>) {
+      listener_ = &visitor;
+    }
+  }
+  /// Whether it may have to be asked at all.
+  [[nodiscard]] bool on() const { return cut_outs_ != nullptr; }
+  [[nodiscard]] bool passes(std::uint32_t triangle, const std::array<double, 3>& weights) const;
+
+ private:
+  const CutOuts* cut_outs_ = nullptr;
+  AnyHitListener* listener_ = nullptr;
+};
+
 /// The best hit so far: least t, then lowest primitive id. `t` begins at t_max, so one comparison tests both
 /// limits.
 template <class Real>
@@ -69,9 +91,12 @@ struct Best {
   std::uint32_t primitive = no_primitive;
   EdgeFunctions<Real> edges{Real(0.0), Real(0.0), Real(0.0)};
   Real det{1.0};
+  HitFilter filter;
 
-  explicit Best(const RaySetup<Real>& setup)
-      : t(plain(setup.t_max) < RealFormat<Real>::largest ? setup.t_max : Real(RealFormat<Real>::largest)) {}
+  /// `which`: what decides whether a hit of a triangle with holes counts; without it each does.
+  explicit Best(const RaySetup<Real>& setup, const HitFilter& which = {})
+      : t(plain(setup.t_max) < RealFormat<Real>::largest ? setup.t_max : Real(RealFormat<Real>::largest)),
+        filter(which) {}
   [[nodiscard]] bool found() const { return primitive != no_primitive; }
   /// The hit with its barycentrics.
   [[nodiscard]] Hit hit() const {
@@ -135,10 +160,20 @@ RaySetup<Real>::RaySetup(const Ray& ray) {
   t_max = Real(ray.t_max);
 }
 
+/// The corners' weights as Best::hit() has them, uncounted.
+template <class Real>
+[[nodiscard]] std::array<double, 3> weights_of(const EdgeFunctions<Real>& edges, Real det) {
+  using Format = std::conditional_t<std::is_same_v<Real, float>, float, double>;
+  const auto share = [&](Real edge) {
+    return static_cast<double>(static_cast<Format>(plain(edge)) / static_cast<Format>(plain(det)));
+  };
+  return {share(edges.u), share(edges.v), share(edges.w)};
+}
+
 /// The part after the sign test, for a triangle whose edge functions agree in sign: parameter, limits, order.
 /// The depths are the corners' coordinates along kz, relative to the origin. True when the triangle became
-/// the best.
-template <class Real>
+/// the best. Without `Holes`, best.filter is off.
+template <bool Holes = true, class Real>
 inline bool accept(const RaySetup<Real>& ray, const EdgeFunctions<Real>& edges, Real det, Real depth_a,
                    Real depth_b, Real depth_c, std::uint32_t id, Best<Real>& best) {
   using std::max;
@@ -151,6 +186,11 @@ inline bool accept(const RaySetup<Real>& ray, const EdgeFunctions<Real>& edges, 
   t = min(t, max(max(a, b), c));
   if (!(t >= ray.t_min) || !(t <= best.t) || (t == best.t && id >= best.primitive)) {
     return false;
+  }
+  if constexpr (Holes) {
+    if (best.filter.on() && !best.filter.passes(id, weights_of(edges, det))) [[unlikely]] {
+      return false;
+    }
   }
   best.t = t;
   best.primitive = id;

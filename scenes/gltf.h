@@ -8,7 +8,7 @@
 // KHR_texture_transform, EXT_texture_webp; where marti is built with their libraries
 // KHR_draco_mesh_compression and EXT_meshopt_compression (also under its name KHR_meshopt_compression), of
 // the whole file. Replaced and counted: what docs/scenes.md lists, unless FileOptions::strict. Left out with
-// a note: points and lines, displacements of texture coordinates, other textures, alpha modes. One source
+// a note: points and lines, displacements of texture coordinates, other textures, blending. One source
 // triangle is one polygon. Indices below 0 count as "not given" where glTF allows that.
 //
 // Motion. The static pose (nodes, morph weights and joints as in the file, no animation) decides which
@@ -26,6 +26,8 @@
 //   shininess    = 2/r^4 - 2, kept in 1 to 100,000  (Blinn-Phong for GGX of alpha = r^2: Walter et al.,
 //                  Microfacet Models for Refraction, EGSR 2007, section 5.2)
 //   specular colour = white mixed with c by m;  emission = emissive factor times its strength.
+// Where alphaMode is MASK, what is cut out has an alpha (the base colour's, factor times texel) below
+// alphaCutoff; where it is BLEND, below 0.5. A primitive that no texel can keep is left out.
 // A material with valid `extras.marti` (see gltf_export.h) gets the exact weights written there.
 //
 // Lights keep colour times intensity (candela, lux) unchanged: there is no exposure. Point and spot lights

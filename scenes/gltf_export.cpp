@@ -243,6 +243,15 @@ class Exporter {
     if (source.texture != no_texture) {
       pbr.baseColorTexture.index = static_cast<int>(source.texture);
     }
+    if (const CutOut& cut_out = source.cut_out; cut_out.asks()) {
+      if (cut_out.texture != source.texture || scene_.textures[cut_out.texture].grey_is_alpha) {
+        fail("material '" + sim::shown(source.name) +
+             "' is cut out by another image than its colours', which glTF cannot say");
+      }
+      material.alphaMode = "MASK";
+      material.alphaCutoff = cut_out.cutoff;
+      pbr.baseColorFactor[3] = cut_out.alpha;
+    }
     if (source.transmission > 0.0) {
       use_extension(material, "KHR_materials_transmission", "transmissionFactor",
                     std::clamp(source.transmission / (source.transmission + source.diffuse), 0.0, 1.0));

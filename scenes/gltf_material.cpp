@@ -183,7 +183,6 @@ Material Materials::convert(int index, Use& use) {
       static_cast<std::uint64_t>(source.normalTexture.index >= 0) +
       static_cast<std::uint64_t>(source.occlusionTexture.index >= 0) +
       static_cast<std::uint64_t>(source.emissiveTexture.index >= 0);
-  left_out_.features["alpha modes other than OPAQUE"] += source.alphaMode == "OPAQUE" ? 0U : 1U;
   if (pbr.baseColorTexture.index >= 0) {
     material.texture = texture_index(pbr.baseColorTexture.index, name);
     use.texture_coordinates = pbr.baseColorTexture.texCoord;
@@ -198,7 +197,31 @@ Material Materials::convert(int index, Use& use) {
     }
     use.texture_coordinates = material.texture == no_texture ? -1 : use.texture_coordinates;
   }
+  material.cut_out = cut_out_of(source, material.texture, name);
   return material;
+}
+
+CutOut Materials::cut_out_of(const tinygltf::Material& source, std::uint32_t texture,
+                             const std::string& name) const {
+  const bool blends = source.alphaMode == "BLEND";
+  if (!blends && source.alphaMode != "MASK") {
+    if (source.alphaMode != "OPAQUE") {
+      left_out_.replace("alpha modes that glTF does not have, by OPAQUE",
+                        sim::shown(model_.path().string()) + ": " + name + ": there is no alpha mode " + "'" +
+                            sim::shown(source.alphaMode) + "'");
+    }
+    return {};
+  }
+  left_out_.features["materials' blending (alphaMode BLEND; cut out where alpha is below 0.5)"] +=
+      blends ? 1U : 0U;
+  CutOut cut_out;
+  cut_out.alpha = checked_number(model_, source.pbrMetallicRoughness.baseColorFactor[3], 0.0, 1.0,
+                                 name + ": the alpha of the base colour");
+  cut_out.cutoff = blends
+                       ? cutoff_of_blending
+                       : checked_number(model_, source.alphaCutoff, 0.0, 1e9, name + ": the alpha cut-off");
+  cut_out.texture = texture;
+  return cut_out;
 }
 
 std::uint32_t Materials::texture_index(int texture, const std::string& user) {

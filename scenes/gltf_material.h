@@ -72,6 +72,8 @@ class Materials {
 
  private:
   Material convert(int index, Use& use);
+  [[nodiscard]] CutOut cut_out_of(const tinygltf::Material& source, std::uint32_t texture,
+                                  const std::string& name) const;
   [[nodiscard]] TextureTransform transform_of(const tinygltf::Value& given, const std::string& user) const;
   std::uint32_t texture_index(int texture, const std::string& user);
   /// The first image in use with the same bytes, so that equal images are decoded once and share a texture.

@@ -6,6 +6,7 @@
 #include "scenes/gltf_animation.h"
 #include "scenes/gltf_exact.h"
 #include "scenes/gltf_extensions.h"
+#include "sim/shown.h"
 
 namespace marti::scenes::gltf {
 
@@ -59,6 +60,11 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
   }
   left_out_.features["vertex colours"] += attribute(primitive.attributes, "COLOR_0") >= 0 ? 1U : 0U;
   const Materials::Use use = materials_.use(primitive.material);
+  const CutOut& cut_out = scene_.materials[use.material].cut_out;
+  if (cut_out.everywhere()) {
+    left_out_.features["primitives that are cut out as a whole"] += 1;
+    return;
+  }
   Coordinates coordinates;
   if (use.texture_coordinates >= 0) {
     const std::string semantic = "TEXCOORD_" + std::to_string(use.texture_coordinates);
@@ -66,6 +72,11 @@ void MeshReader::add_primitive(const tinygltf::Primitive& primitive, const Pose&
                    exact_view(model_, primitive.extras, "TEXCOORD_0"), use.transform};
     left_out_.features["textures on primitives without the texture coordinates for them"] +=
         coordinates.accessor < 0 ? 1U : 0U;
+    if (coordinates.accessor < 0 && cut_out.asks()) {
+      left_out_.replace("texture coordinates of cut-outs that are not given, by (0, 0)",
+                        sim::shown(model_.path().string()) + ": " + name + ": its material is cut out by a " +
+                            "texture, so it needs " + semantic);
+    }
     for (const auto& target : primitive.targets) {
       left_out_.features["displacements of texture coordinates"] += target.contains(semantic) ? 1U : 0U;
     }

@@ -64,7 +64,9 @@ void MergedScene::add(Scene part, const std::string& name) {
   }
   whole_.take_memory(host_bytes(part), "its parts take");
   for (Material& material : part.materials) {
-    material.texture += material.texture == no_texture ? 0 : textures;
+    for (std::uint32_t* texture : {&material.texture, &material.cut_out.texture}) {
+      *texture += *texture == no_texture ? 0 : textures;
+    }
   }
   if (scene_.framed && !part.framed) {
     scene_.framed = false;

@@ -16,13 +16,13 @@ constexpr double largest_exponent = 1e5;
 
 /// Statements of the format and of its customary extensions (physically based ones, those of Maya and 3ds
 /// Max) that say nothing about what Whitted's model has.
-constexpr std::array<std::string_view, 32> counted_values = {
-    "Ka",       "Km",     "Kt",       "Pc",     "Pcr",         "Pm",     "Pr",     "Ps",
-    "aniso",    "anisor", "bump",     "decal",  "disp",        "em",     "km",     "map_Bump",
-    "map_Ka",   "map_Ke", "map_Ks",   "map_Ns", "map_Pm",      "map_Pr", "map_Ps", "map_aat",
-    "map_bump", "map_d",  "map_disp", "map_Tr", "map_opacity", "norm",   "refl",   "sharpness"};
+constexpr std::array<std::string_view, 31> counted_values = {
+    "Ka",       "Km",       "Kt",     "Pc",          "Pcr",    "Pm",     "Pr",       "Ps",
+    "aniso",    "anisor",   "bump",   "decal",       "disp",   "em",     "km",       "map_Bump",
+    "map_Ka",   "map_Ke",   "map_Ks", "map_Ns",      "map_Pm", "map_Pr", "map_Ps",   "map_aat",
+    "map_bump", "map_disp", "map_Tr", "map_opacity", "norm",   "refl",   "sharpness"};
 
-/// A word of map_Kd's options and the number of values that may follow it.
+/// A word of a map's options and the number of values that may follow it.
 struct MapOption {
   std::string_view name;
   std::size_t least;
@@ -70,8 +70,8 @@ class MtlReader {
       lines_.fail(in_quotes(word) + " before the first newmtl");
     }
     MtlMaterial& material = materials_.back();
-    if (word == "map_Kd") {
-      read_map(material);
+    if (word == "map_Kd" || word == "map_d") {
+      read_map(word, word == "map_d" ? material.opacity_map : material.texture);
       return;
     }
     lines_.drop_comment();
@@ -157,18 +157,18 @@ class MtlReader {
     return model;
   }
 
-  void read_map(MtlMaterial& material) {
+  void read_map(std::string_view statement, MtlMap& map) {
     const std::vector<std::string_view>& words = lines_.words();
     std::size_t at = 1;
     while (at < words.size() && words[at].starts_with('-')) {
       const auto* const option = std::find_if(map_options.begin(), map_options.end(),
                                               [&](const MapOption& o) { return o.name == words[at]; });
       if (option == map_options.end()) {
-        lines_.fail("map_Kd has no option " + in_quotes(words[at]));
+        lines_.fail(std::string(statement) + " has no option " + in_quotes(words[at]));
       }
       if (std::find(foreign_options.begin(), foreign_options.end(), option->name) != foreign_options.end()) {
         left_out_.replace("options " + std::string(option->name) + " of textures, by none",
-                          lines_.refusal("map_Kd has no option " + in_quotes(words[at])));
+                          lines_.refusal(std::string(statement) + " has no option " + in_quotes(words[at])));
         at = std::min(at + 2, words.size());
         continue;
       }
@@ -178,19 +178,23 @@ class MtlReader {
         ++end;
       }
       if (option->name == "-clamp" && end <= words.size()) {
-        material.clamp = words[at + 1] == "on";
+        map.clamp = words[at + 1] == "on";
+      } else if (option->name == "-imfchan" && statement == "map_d" && end <= words.size()) {
+        map.matte = words[at + 1] == "m";
+        left_out_.features["channels of map_d other than l and m"] +=
+            map.matte || words[at + 1] == "l" ? 0U : 1U;
       } else {
         left_out_.features["options " + std::string(option->name) + " of textures"] += 1;
       }
       at = end;
     }
-    material.texture = lines_.from(at);
-    material.texture_place = lines_.place();
-    if (material.texture.empty()) {
+    map.file = lines_.from(at);
+    map.place = lines_.place();
+    if (map.file.empty()) {
       left_out_.replace("textures without a file's name, by none",
-                        lines_.refusal("map_Kd needs the name of a file"));
+                        lines_.refusal(std::string(statement) + " needs the name of a file"));
     }
-    std::replace(material.texture.begin(), material.texture.end(), '\\', '/');
+    std::replace(map.file.begin(), map.file.end(), '\\', '/');
   }
 
   TextLines lines_;

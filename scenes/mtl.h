@@ -14,6 +14,14 @@
 
 namespace marti::scenes {
 
+/// An image of a material.
+struct MtlMap {
+  std::string file;    ///< its name; empty: none
+  std::string place;   ///< "FILE:LINE" of the statement
+  bool clamp = false;  ///< -clamp on: it does not repeat
+  bool matte = false;  ///< -imfchan m: its alpha counts, not its colours
+};
+
 /// The values of one material; those that are not given are as the format says or, where it says nothing,
 /// those of a matt grey one.
 struct MtlMaterial {
@@ -28,9 +36,8 @@ struct MtlMaterial {
   std::optional<double> opacity;       ///< d
   std::optional<double> transparency;  ///< Tr
   std::int64_t illumination = 2;       ///< illum
-  std::string texture;                 ///< map_Kd: the file's name; empty: none
-  std::string texture_place;           ///< "FILE:LINE" of map_Kd
-  bool clamp = false;                  ///< -clamp on: the texture does not repeat
+  MtlMap texture;                      ///< map_Kd
+  MtlMap opacity_map;                  ///< map_d
 };
 
 /// Reads a library; `name` is the file's in messages. Throws UserError, "FILE:LINE: reason", for statements

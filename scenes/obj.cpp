@@ -146,7 +146,8 @@ class ObjReader {
       lines_.fail(reason);
     }
     const std::uint32_t material = materials_.current();
-    const bool textured = scene_.materials[material].texture != no_texture;
+    const CutOut& cut_out = scene_.materials[material].cut_out;
+    const bool textured = scene_.materials[material].texture != no_texture || cut_out.asks();
     const std::size_t first = corners_.size();
     face_.clear();
     numbers_.clear();
@@ -175,6 +176,15 @@ class ObjReader {
     }
     given.normal = usable_normals ? given.normal : not_given;
     given.coordinates = usable_coordinates ? given.coordinates : not_given;
+    if (cut_out.asks() && given.coordinates == not_given) {
+      left_out_.replace("texture coordinates of cut-outs that are not given, by (0, 0)",
+                        lines_.refusal("a face whose material has map_d needs texture coordinates"));
+    }
+    if (cut_out.everywhere()) {
+      left_out_.features["faces that are cut out as a whole"] += 1;
+      corners_.resize(first);
+      return;
+    }
     if (!mesh_.add(numbers_, face_, material)) {
       corners_.resize(first);
       return;

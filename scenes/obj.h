@@ -18,8 +18,9 @@
 // highlight (illum 2 and above) and of reflection (illum 3 to 9), Ks divided by it their colour; the exponent
 // is Ns, or 1 if that is more. What d leaves of 1 is transmitted: refracted by Ni with illum 4, 6, 7 and 9,
 // else straight on. With illum 6 and 7 so is (1 - Ks) Tf, if that is more. Ke is emission; map_Kd is a
-// texture. A material library may read textures in the scene's folder and below, as a glTF file may. A face
-// before the first usemtl is matt grey (0.8).
+// texture. With map_d a face is cut out where d times its texel (the mean of its colours; with -imfchan m, or
+// of the file of map_Kd, its alpha) is below 0.5, and opaque elsewhere. A material library may read textures
+// in the scene's folder and below, as a glTF file may. A face before the first usemtl is matt grey (0.8).
 #pragma once
 
 #include <filesystem>

@@ -142,8 +142,10 @@ Material ObjMaterials::convert(const Known& known) {
       std::abs(*source.opacity + *source.transparency - 1.0) > 1e-3) {
     left_out_.features["transparencies Tr that contradict d"] += 1;
   }
-  material.diffuse = opacity;
-  material.transmission = 1.0 - opacity;
+  material.cut_out = cut_out_of(known, opacity);
+  // Where a map says what is cut out, all else is opaque.
+  material.diffuse = material.cut_out.asks() ? 1.0 : opacity;
+  material.transmission = 1.0 - material.diffuse;
   if (source.filter && (model == 6 || model == 7)) {
     material.transmission = std::max(material.transmission, (1.0 - specular) * largest_of(*source.filter));
   }
@@ -151,47 +153,63 @@ Material ObjMaterials::convert(const Known& known) {
     left_out_.features["indices of refraction below 1"] += source.ior < 1.0 ? 1U : 0U;
     material.ior = std::max(1.0, source.ior);
   }
-  if (!source.texture.empty()) {
-    material.texture = texture_of(known);
+  if (!source.texture.file.empty()) {
+    material.texture = texture_of(known, source.texture, false);
   }
   return material;
 }
 
-std::uint32_t ObjMaterials::texture_of(const Known& known) {
-  const std::string path = known.folder + known.source.texture;
-  const auto [place, is_new] = textures_.try_emplace({path, known.source.clamp}, no_texture);
+CutOut ObjMaterials::cut_out_of(const Known& known, double opacity) {
+  const MtlMap& map = known.source.opacity_map;
+  if (map.file.empty()) {
+    return {};
+  }
+  // The image of colours is named once more for its alpha.
+  const bool same = map.file == known.source.texture.file;
+  return {opacity, cutoff_of_blending, texture_of(known, map, !map.matte && !same)};
+}
+
+std::uint32_t ObjMaterials::texture_of(const Known& known, const MtlMap& map, bool grey_is_alpha) {
+  const std::string path = known.folder + map.file;
+  const auto [place, is_new] = textures_.try_emplace({path, map.clamp, grey_is_alpha}, no_texture);
   if (!is_new) {
     return place->second;
   }
   std::string reason;
-  const std::optional<std::string> bytes = bytes_of(path, known.source.texture_place, reason);
+  const std::optional<std::string> bytes = bytes_of(path, map.place, reason);
   if (!bytes) {
     left_out_.replace("textures that cannot be read, by none", reason);
     return no_texture;
   }
-  place->second = add_image(file_, {known.source.texture, std::as_bytes(std::span(*bytes))}, decode_,
-                            known.source.clamp, scene_, left_out_);
+  place->second =
+      add_image(file_, {map.file, std::as_bytes(std::span(*bytes))}, decode_, map.clamp, scene_, left_out_);
+  if (place->second != no_texture) {
+    scene_.textures[place->second].grey_is_alpha = grey_is_alpha;
+  }
   return place->second;
 }
 
 void ObjMaterials::check_unused() {
   for (const Known& known : known_) {
-    if (known.in_scene || known.source.texture.empty()) {
-      continue;
+    for (const MtlMap* map : {&known.source.texture, &known.source.opacity_map}) {
+      if (!known.in_scene && !map->file.empty()) {
+        check_image(known.folder, *map);
+      }
     }
-    std::string reason;
-    const std::optional<std::string> bytes =
-        bytes_of(known.folder + known.source.texture, known.source.texture_place, reason);
-    if (!bytes) {
-      left_out_.replace("textures that cannot be read, by none", reason);
-      continue;
-    }
-    try {
-      static_cast<void>(
-          decode_image(file_, {known.source.texture, std::as_bytes(std::span(*bytes))}, decode_));
-    } catch (const ImageError& error) {
-      left_out_.replace("textures that cannot be decoded, by none", error.what());
-    }
+  }
+}
+
+void ObjMaterials::check_image(const std::string& folder, const MtlMap& map) {
+  std::string reason;
+  const std::optional<std::string> bytes = bytes_of(folder + map.file, map.place, reason);
+  if (!bytes) {
+    left_out_.replace("textures that cannot be read, by none", reason);
+    return;
+  }
+  try {
+    static_cast<void>(decode_image(file_, {map.file, std::as_bytes(std::span(*bytes))}, decode_));
+  } catch (const ImageError& error) {
+    left_out_.replace("textures that cannot be decoded, by none", error.what());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -50,8 +51,11 @@ class ObjMaterials {
   /// The bytes of a file in the scene's folder; std::nullopt, and `reason` says why, if it cannot be read.
   /// Throws UserError for one elsewhere and one that is too large.
   std::optional<std::string> bytes_of(const std::string& path, const std::string& place, std::string& reason);
+  void check_image(const std::string& folder, const MtlMap& map);
   [[nodiscard]] Material convert(const Known& known);
-  [[nodiscard]] std::uint32_t texture_of(const Known& known);
+  /// `grey_is_alpha`: as Texture::grey_is_alpha.
+  [[nodiscard]] std::uint32_t texture_of(const Known& known, const MtlMap& map, bool grey_is_alpha);
+  [[nodiscard]] CutOut cut_out_of(const Known& known, double opacity);
 
   const SourceFile& file_;
   const ImageDecoder& decode_;
@@ -64,7 +68,7 @@ class ObjMaterials {
   std::optional<std::size_t> chosen_;
   std::optional<std::uint32_t> default_material_;
   std::uint64_t used_ = 0;
-  std::map<std::pair<std::string, bool>, std::uint32_t> textures_;  // by file, and whether it is clamped
+  std::map<std::tuple<std::string, bool, bool>, std::uint32_t> textures_;  // by file, MtlMap::clamp, alpha
 };
 
 }  // namespace marti::scenes

@@ -35,6 +35,24 @@ struct Triangle {
 inline constexpr double largest_emission = 1e9;
 inline constexpr double largest_ior = 100.0;
 
+/// The cut-off of materials whose files ask for blending with what lies behind them.
+inline constexpr double cutoff_of_blending = 0.5;
+
+/// Where a material is cut out: a ray goes on through a point whose alpha, this one times the texel's, is
+/// below the cut-off. It is either cut out at such a point or opaque; nothing is blended.
+struct CutOut {
+  double alpha = 1.0;   ///< 0 to 1
+  double cutoff = 0.0;  ///< 0: nowhere
+  std::uint32_t texture = no_texture;
+
+  /// Whether no hit counts: no texel has an alpha above 1. Readers leave such triangles out.
+  [[nodiscard]] bool everywhere() const { return alpha < cutoff; }
+  /// Whether a hit has to be asked about.
+  [[nodiscard]] bool asks() const { return cutoff > 0.0 && texture != no_texture; }
+  /// Of a point at which the texture has this alpha.
+  [[nodiscard]] bool keeps(double of_texel) const { return alpha * of_texel >= cutoff; }
+};
+
 struct Material {
   std::string name;
   glm::dvec3 color{0.8};           ///< linear, 0 to 1; multiplied by the texture if there is one
@@ -47,6 +65,7 @@ struct Material {
   double highlight = 0.0;     ///< weight of the lights' highlights, 0 to 1
   double shininess = 1.0;     ///< exponent of the highlight
   std::uint32_t texture = no_texture;
+  CutOut cut_out;
 };
 
 /// Decoded 8-bit RGBA texels, rows from the top; `srgb` says whether sampling converts them to linear values.
@@ -57,6 +76,7 @@ struct Texture {
   bool srgb = true;
   bool repeat_u = true;
   bool repeat_v = true;
+  bool grey_is_alpha = false;  ///< the alpha is the mean of a texel's colours, and not its fourth sample
   /// width * height texels, or none if they are not decoded: every sample is then white, and `file` may hold
   /// the encoded image.
   std::vector<std::array<std::uint8_t, 4>> texels;

@@ -85,11 +85,23 @@ double srgb_to_linear(std::uint8_t encoded) {
   return table[encoded];
 }
 
-TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv) {
+std::uint32_t nearest_texel(const Texture& texture, const glm::dvec2& uv) {
   const std::uint32_t column = texel_coordinate(uv.x, texture.width, texture.repeat_u);
   const std::uint32_t row = texel_coordinate(uv.y, texture.height, texture.repeat_v);
+  return row * texture.width + column;
+}
+
+double alpha_of(const Texture& texture, std::uint32_t texel) {
+  if (texture.texels.empty()) {
+    return 1.0;
+  }
+  const std::array<std::uint8_t, 4>& samples = texture.texels[texel];
+  return texture.grey_is_alpha ? (samples[0] + samples[1] + samples[2]) / (3.0 * 255.0) : samples[3] / 255.0;
+}
+
+TextureSample sample_nearest(const Texture& texture, const glm::dvec2& uv) {
   TextureSample sample;
-  sample.texel = row * texture.width + column;
+  sample.texel = nearest_texel(texture, uv);
   if (texture.texels.empty()) {
     sample.color = glm::dvec3(1.0);
     return sample;

@@ -2,6 +2,7 @@
 // callback.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -50,6 +51,23 @@ struct TextureSample {
   glm::dvec3 color{0.0};    ///< linear, 0 to 1
   std::uint32_t texel = 0;  ///< the texel that was read: row * width + column
 };
+
+/// The texture coordinates at a point of a triangle, from its barycentric weights. Component by component, so
+/// that whoever asks reads the same texel. Real: the scalar of the arithmetic.
+template <class Real>
+[[nodiscard]] glm::dvec2 mixed_uv(const std::array<glm::dvec2, 3>& uv, const Real (&weight)[3]) {
+  const auto mix = [&](int axis) {
+    return static_cast<double>(weight[0] * Real(uv[0][axis]) + weight[1] * Real(uv[1][axis]) +
+                               weight[2] * Real(uv[2][axis]));
+  };
+  return {mix(0), mix(1)};
+}
+
+/// The number of the texel nearest to `uv`, row * width + column; see sample_nearest().
+[[nodiscard]] std::uint32_t nearest_texel(const Texture& texture, const glm::dvec2& uv);
+
+/// The alpha of a texel, 0 to 1; without texels 1.
+[[nodiscard]] double alpha_of(const Texture& texture, std::uint32_t texel);
 
 /// The texel nearest to `uv`. (0, 0) is the upper left corner of the image, u goes to the right, v downwards;
 /// outside 0..1 the texture repeats or its edge continues, as its wrap modes say. A uv that is not finite

@@ -24,7 +24,7 @@ std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& step
   return {steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts,
           steps.lists,
           steps.tests,
-          steps.shades + steps.passes,
+          steps.shades + steps.passes + steps.any_hits,
           steps.texels,
           steps.pixels};
 }

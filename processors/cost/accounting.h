@@ -19,7 +19,7 @@ namespace marti::processors::cost {
 enum class Activity : std::uint8_t {
   traversal,     ///< setting up rays, visiting branches and leaves
   intersection,  ///< testing primitives
-  shading,       ///< hit points, lights, textures, finished pixels
+  shading,       ///< hit points, lights, textures, holes of triangles, finished pixels
   building,      ///< subdividing nodes during the frame
   cache_access,  ///< hit cycles
   switching,     ///< going from one context to another
@@ -87,6 +87,7 @@ struct StepCounts {
   std::int64_t shades = 0;
   std::int64_t lights = 0;
   std::int64_t texels = 0;
+  std::int64_t any_hits = 0;
   std::int64_t cuts = 0;
   std::int64_t passes = 0;
   std::int64_t pixels = 0;
@@ -114,6 +115,7 @@ struct StepCounts {
         C{"shades", "1", "surface points shaded", &StepCounts::shades},
         C{"lights", "1", "light contributions added", &StepCounts::lights},
         C{"texels", "1", "texels read", &StepCounts::texels},
+        C{"any_hits", "1", "hits of triangles with holes asked about", &StepCounts::any_hits},
         C{"cuts", "1", "nodes taken as one voxel", &StepCounts::cuts},
         C{"passes", "1", "nodes too little covered for that", &StepCounts::passes},
         C{"pixels", "1", "pixels finished", &StepCounts::pixels, sim::MergeRule::sum, sim::Better::neither}};

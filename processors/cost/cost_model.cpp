@@ -154,6 +154,7 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
   steps.shade = price(path ? mixes.path_shade : mixes.shade, cycles, read_record(cycles, words.material));
   steps.light = price(path ? mixes.path_light : mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
+  steps.any_hit = price(mixes.any_hit, cycles, read_record(cycles, words.material));
   steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
   steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
   steps.pixel = price(mixes.pixel, cycles,

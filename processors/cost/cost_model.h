@@ -41,9 +41,10 @@ struct StepCycles {
   std::int64_t shade = 0;
   std::int64_t light = 0;
   std::int64_t texel = 0;
-  std::int64_t cut = 0;    ///< reading a node and finding that it is small and enough of it covered
-  std::int64_t pass = 0;   ///< reading an averaged material and finding that too little is covered
-  std::int64_t pixel = 0;  ///< converting and storing one finished pixel
+  std::int64_t any_hit = 0;  ///< asking whether a hit counts, without the texel that decides
+  std::int64_t cut = 0;      ///< reading a node and finding that it is small and enough of it covered
+  std::int64_t pass = 0;     ///< reading an averaged material and finding that too little is covered
+  std::int64_t pixel = 0;    ///< converting and storing one finished pixel
 };
 
 /// Names of the presets: a processor and its year, or `unit`, in which each operation takes a cycle.

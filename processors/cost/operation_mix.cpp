@@ -71,7 +71,8 @@ class CountingRecorder {
     nearest_wanted_ = kind != program::RayKind::shadow;
     const Uncounted uncounted;
     setup_.emplace(ray);
-    best_.emplace(*setup_);
+    accel::NullVisitor nobody;
+    best_.emplace(*setup_, accel::HitFilter(triangles_, nobody));
   }
 
   void branch(std::uint32_t /*node*/) {
@@ -204,6 +205,10 @@ constexpr OperationMix pixel_conversion{0, 3000, 0, 0, 6000, 5000};
 /// the area, a comparison, a root, over the projection, compared), and the voxel's number looked up.
 constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
 
+/// Asking whether a hit counts, by hand from accel/cut_outs.h: three quotients, the corners' weights, and the
+/// texel's alpha times the material's compared with the cut-off.
+constexpr OperationMix asking{0, 1000, 3000, 0, 1000, 0};
+
 OperationMix sum(const OperationMix& a, const OperationMix& b) {
   return {a.add + b.add,         a.multiply + b.multiply, a.divide + b.divide, a.square_root + b.square_root,
           a.compare + b.compare, a.integer + b.integer};
@@ -316,7 +321,8 @@ OperationMixes with_shading(const WalkMixes& walk) {
           .path_light = {30447, 51625, 1414, 707, 4241, 0},
           .texel = {6000, 11000, 0, 0, 0, 11000},
           .pixel = pixel_conversion,
-          .cut = voxel_cut};
+          .cut = voxel_cut,
+          .any_hit = asking};
 }
 
 }  // namespace

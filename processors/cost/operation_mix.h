@@ -50,6 +50,7 @@ struct OperationMix {
 ///   path_shade, path_light   these with Integrator::path: drawing the point of an emissive triangle and the
 ///           way on is a part of shading; the light is an emissive triangle
 ///   texel   interpolating the texture's coordinates, finding the texel, applying it
+///   any_hit the corners' weights at a hit of a triangle with holes, and the texel's alpha compared
 ///   pixel   converting the finished colour
 ///   cut     with the voxel cut: finding that a node is small and which share of it is covered
 /// Fetching a record's words and computing its address is priced from the layout, beside these.
@@ -68,6 +69,7 @@ struct OperationMixes {
   OperationMix texel;
   OperationMix pixel;
   OperationMix cut;
+  OperationMix any_hit;
 };
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,

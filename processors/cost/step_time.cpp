@@ -30,6 +30,7 @@ StepTicks step_ticks(const machine::MachineConfig& config, const program::WorkLo
   ticks.cut = config.clock.cycles(cycles.cut);
   ticks.pass = config.clock.cycles(cycles.pass);
   ticks.texel = config.clock.cycles(cycles.texel);
+  ticks.any_hit = config.clock.cycles(cycles.any_hit);
   ticks.pixel = config.clock.cycles(cycles.pixel);
   ticks.hit = config.clock.cycles(config.cache.hit_cycles);
   return ticks;

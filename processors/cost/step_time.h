@@ -19,6 +19,7 @@ struct StepTicks {
   sim::Ticks shade = 0;
   sim::Ticks light = 0;
   sim::Ticks texel = 0;
+  sim::Ticks any_hit = 0;
   sim::Ticks cut = 0;
   sim::Ticks pass = 0;
   sim::Ticks pixel = 0;
@@ -50,6 +51,7 @@ void for_each_step(const Costs& costs, const StepCounts& steps, Visit&& visit) {
   visit(Activity::shading, costs.shade, steps.shades);
   visit(Activity::shading, costs.light, steps.lights);
   visit(Activity::shading, costs.texel, steps.texels);
+  visit(Activity::shading, costs.any_hit, steps.any_hits);
   visit(Activity::shading, costs.pixel, steps.pixels);
 }
 

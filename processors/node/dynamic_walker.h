@@ -573,6 +573,11 @@ class DynamicWalker {
         spend(cursor, ticks_.pass, 1);
         read_one(cursor, memory::RecordKind::material, operand);
         break;
+      case program::Step::any_hit:
+        ++steps.any_hits;
+        spend(cursor, ticks_.any_hit, 1);
+        read_one(cursor, memory::RecordKind::material, operand);
+        break;
       case program::Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);

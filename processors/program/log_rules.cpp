@@ -96,6 +96,7 @@ class StepRules {
                  "a pixel of several samples begins without a camera ray");
     std::uint32_t samples = 0;
     auto before = Step::ray;
+    bool asked = false;  // the step before asks whether a hit counts, or is the texel for that
     for (std::size_t at = 0; at < words.size() && fault.none();) {
       const Step step = step_of(words[at]);
       const std::uint32_t operand = operand_of(words[at]);
@@ -106,6 +107,11 @@ class StepRules {
                    "a cut without its averaged material, or the reverse");
       fault.add_if(before == Step::pass && (!visits_node(step) || step == Step::cut),
                    "a pass without its node");
+      fault.add_if(step == Step::any_hit && !(is_leaf(before) || (asked && before == Step::texel)),
+                   "a hit that is asked about without its leaf");
+      fault.add_if(before == Step::any_hit && step != Step::texel,
+                   "a hit that is asked about without its texel");
+      asked = step == Step::any_hit || (before == Step::any_hit && step == Step::texel);
       if (fault.none()) {
         check_step(step, operand, &words[at], fault);
         samples += words[at] == camera_ray ? 1 : 0;
@@ -114,11 +120,13 @@ class StepRules {
       }
     }
     fault.add_if(before == Step::cut || before == Step::pass, "a pixel ends in the middle of a voxel");
+    fault.add_if(before == Step::any_hit, "a hit that is asked about without its texel");
     fault.add_if(log_.samples != 1 && !words.empty() && samples != log_.samples,
                  "a pixel has fewer or more camera rays than samples");
   }
 
  private:
+  static bool is_leaf(Step step) { return visits_node(step) && step != Step::branch && step != Step::cut; }
   [[nodiscard]] bool averaged(std::uint32_t material) const {
     return material < log_.materials && material >= log_.materials - log_.voxels;
   }
@@ -133,7 +141,7 @@ class StepRules {
     fault.add_if(step == Step::ray && ray_number_of(operand) >= ray_kinds, "a ray of an unknown kind");
     fault.add_if(step == Step::pass && !averaged(operand),
                  "an averaged material that the database does not have");
-    fault.add_if(step == Step::shade && operand >= log_.materials,
+    fault.add_if((step == Step::shade || step == Step::any_hit) && operand >= log_.materials,
                  "a material that the database does not have");
     fault.add_if(step == Step::light && operand >= log_.lights, "a light that the database does not have");
     if (step == Step::texel) {
@@ -141,7 +149,7 @@ class StepRules {
                        word[1] >= log_.texture_begin[operand + 1] - log_.texture_begin[operand],
                    "a texel that the database does not have");
     }
-    fault.add_if(step > Step::mailed_leaf, "an unknown step");
+    fault.add_if(step > Step::any_hit, "an unknown step");
   }
 
   void check_visit(Step step, const accel::TopologyNode& node, const std::uint32_t* word,
@@ -172,6 +180,7 @@ class OrderRules {
     entered_ = log_.has_entered() ? log_.entered(x, y) : std::span<const std::uint32_t>();
     const std::span<const std::uint32_t> words = log_.pixel(x, y);
     bool tracing = false;
+    auto before = Step::ray;
     std::size_t rays = 0;
     for (std::size_t at = 0; at < words.size() && fault.none(); at += step_words(&words[at])) {
       const Step step = step_of(words[at]);
@@ -186,8 +195,9 @@ class OrderRules {
         visit(step, operand_of(words[at]), fault);
       } else {
         fault.add_if(rays == 0, "a step before the first ray");
-        tracing = tracing && step == Step::pass;
+        tracing = tracing && (step == Step::pass || step == Step::any_hit || before == Step::any_hit);
       }
+      before = step;
     }
     fault.add_if(!entered_.empty(), "more entered children than branches visited");
     fault.add_if(log_.has_ray_words() && log_.ray_words(x, y).size() != rays,

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "accel/counted.h"
+#include "accel/cut_outs.h"
 #include "processors/program/sample_points.h"
 #include "processors/program/shading.h"
 #include "processors/program/vector.h"
@@ -171,11 +172,12 @@ struct EmitterSample {
   Vec3<Real> target;  ///< where a ray to it ends: just before the triangle
 };
 
-/// Draws the point. There must be emitters. `reach`: as for surface_at().
+/// Draws the point. There must be emitters. One in a hole, which `cut_outs` knows of (null: none), does not
+/// shine. `reach`: as for surface_at().
 template <typename Real>
-EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitters,
-                               const Surface<Real>& surface, const PathNumbers& numbers, std::uint32_t bounce,
-                               double reach) {
+EmitterSample<Real> emitter_at(const scenes::Scene& scene, const accel::CutOuts* cut_outs,
+                               const Emitters& emitters, const Surface<Real>& surface,
+                               const PathNumbers& numbers, std::uint32_t bounce, double reach) {
   using std::sqrt;
   constexpr double one_over_pi = 0.31830988618379067154;
   const Emitters::Choice choice =
@@ -191,6 +193,13 @@ EmitterSample<Real> emitter_at(const scenes::Scene& scene, const Emitters& emitt
   }
   const std::array<Real, 3> b = point_of_triangle(drawn<Real>(numbers.at(bounce, Draw::on_emitter_a)),
                                                   drawn<Real>(numbers.at(bounce, Draw::on_emitter_b)));
+  if (cut_outs != nullptr && cut_outs->asks(choice.triangle) &&
+      !cut_outs
+           ->ask(choice.triangle,
+                 {static_cast<double>(b[0]), static_cast<double>(b[1]), static_cast<double>(b[2])})
+           .counts) {
+    return {};
+  }
   const scenes::Triangle& triangle = scene.triangles[choice.triangle];
   const Vec3<Real> corners[3] = {Vec3<Real>(scene.positions[triangle.vertex[0]]),
                                  Vec3<Real>(scene.positions[triangle.vertex[1]]),

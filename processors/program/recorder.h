@@ -11,8 +11,10 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "accel/cut_outs.h"
 #include "accel/ray.h"
 #include "accel/visitor.h"
 #include "processors/program/ray_grid.h"
@@ -71,11 +73,16 @@ class BesideWords {
   std::vector<std::uint32_t> begin_;
 };
 
-/// Writes one image row at a time. The words go through a raw pointer into a buffer that the recorder
-/// keeps from row to row, because most of recording's cost would be growing and clearing vectors; a
-/// finished row is copied out at its exact size.
-class RowRecorder {
+/// Writes one image row at a time, also from walks that ask whether hits count. The words go through a raw
+/// pointer into a buffer that the recorder keeps from row to row, because most of recording's cost would be
+/// growing and clearing vectors; a finished row is copied out at its exact size.
+class RowRecorder : public accel::AnyHitListener {
  public:
+  RowRecorder() = default;
+  RowRecorder(const RowRecorder&) = delete;
+  RowRecorder& operator=(const RowRecorder&) = delete;
+  virtual ~RowRecorder() = default;
+
   void phase(Phase /*phase*/, RayKind /*kind*/) {}
 
   /// `grid`: by which the row also gets a word for each ray; `meets`: what each ray meets. Null: it gets
@@ -90,6 +97,7 @@ class RowRecorder {
     meets_.begin_row(width);
   }
   void begin_pixel() {
+    end_pixel();
     begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
     if (grid_ != nullptr) {
       rays_.begin_pixel();
@@ -128,6 +136,11 @@ class RowRecorder {
   void shade(std::uint32_t material) { put(make_word(Step::shade, material)); }
   void light(std::uint32_t light) { put(make_word(Step::light, light)); }
   void texel(std::uint32_t texture, std::uint32_t texel) { put(make_word(Step::texel, texture), texel); }
+  void any_hit(const accel::AnyHit& hit) final {
+    asked_ = true;
+    put(make_word(Step::any_hit, hit.material));
+    texel(hit.texture, hit.texel);
+  }
 
   /// What a pixel was recorded as before.
   void copy(const LogRow& row, std::uint32_t x) {
@@ -142,6 +155,7 @@ class RowRecorder {
 
   /// Ends the row and copies it out.
   void end_row(LogRow& row) {
+    end_pixel();
     begin_.push_back(static_cast<std::uint32_t>(next_ - buffer_.get()));
     const sim::ChunkAllocator<std::uint32_t> chunks(chunks_);
     row.words = sim::ChunkVector<std::uint32_t>(buffer_.get(), next_, chunks);
@@ -168,6 +182,23 @@ class RowRecorder {
   struct Free {
     void operator()(std::uint32_t* words) const { std::free(words); }
   };
+
+  // Puts each leaf before the hits that were asked about while it was tested: a walk tells of it after them.
+  void end_pixel() {
+    if (!std::exchange(asked_, false)) [[likely]] {
+      return;
+    }
+    std::uint32_t* word = buffer_.get() + begin_.back();
+    while (word != next_) {
+      std::uint32_t* leaf = word;
+      while (step_of(*leaf) == Step::any_hit) {
+        leaf += any_hit_words;
+      }
+      std::uint32_t* const end = leaf + step_words(leaf);
+      std::rotate(word, leaf, end);
+      word = end;
+    }
+  }
 
   void put(std::uint32_t word) {
     if (next_ == end_) [[unlikely]] {
@@ -204,6 +235,7 @@ class RowRecorder {
   std::uint32_t* next_ = nullptr;
   std::uint32_t* end_ = nullptr;
   std::vector<std::uint32_t> begin_;
+  bool asked_ = false;  // in the present pixel, whether a hit counts
   const RayGrid* grid_ = nullptr;
   BesideWords rays_;
   RayMeets* meeting_ = nullptr;

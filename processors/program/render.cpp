@@ -148,6 +148,12 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
     throw sim::KeyError("image.integrator",
                         "\"rays\" needs the rays of a file (image.rays), which this command does not trace");
   }
+  if (options.meets && triangles.cut_outs() != nullptr) {
+    throw sim::KeyError(
+        "rt.share",
+        "which hits of triangles with holes are asked about would rest on who helps whom, and "
+        "scene.source has such triangles; set rt.share = \"none\"");
+  }
   Frame frame;
   frame.image.width = options.width;
   frame.image.height = options.height;
@@ -166,6 +172,11 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
       throw sim::KeyError("image.voxel_cut", "averages triangles only, and scene.source has " +
                                                  std::to_string(scene.quadrics.size()) +
                                                  " spheres, cylinders and cones; set image.voxel_cut = 0");
+    }
+    if (triangles.cut_outs() != nullptr) {
+      throw sim::KeyError("image.voxel_cut",
+                          "averages whole triangles, and scene.source has some with holes; set "
+                          "image.voxel_cut = 0");
     }
     voxels = make_voxels(scene, octree->concrete(), options, threads);
   }

@@ -211,12 +211,7 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
 template <typename Real>
 glm::dvec2 uv_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3]) {
   const scenes::Triangle& t = scene.triangles[triangle];
-  const auto mix = [&](auto component) {
-    return static_cast<double>(b[0] * Real(component(scene.uvs[t.vertex[0]])) +
-                               b[1] * Real(component(scene.uvs[t.vertex[1]])) +
-                               b[2] * Real(component(scene.uvs[t.vertex[2]])));
-  };
-  return {mix([](const glm::dvec2& uv) { return uv.x; }), mix([](const glm::dvec2& uv) { return uv.y; })};
+  return scenes::mixed_uv({scene.uvs[t.vertex[0]], scene.uvs[t.vertex[1]], scene.uvs[t.vertex[2]]}, b);
 }
 
 /// The neighbouring number in the direction of the sign of `toward`: the next greater one when toward > 0,

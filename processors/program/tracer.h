@@ -323,8 +323,8 @@ class Tracer {
       }
       jitter(surface, numbers_, number, light, place);
     } else {
-      const EmitterSample<Real> sample =
-          emitter_at<Real>(scene_, emitters_, surface, numbers_, number, reach_);
+      const EmitterSample<Real> sample = emitter_at<Real>(scene_, structure_.triangles().cut_outs(),
+                                                          emitters_, surface, numbers_, number, reach_);
       light = sample.light;
       place = sample.target;
     }
@@ -401,8 +401,8 @@ class Tracer {
   /// Next-event estimation: the light of one point of one emissive triangle.
   void ask_emitter(const Pending& pending, const scenes::Material& material, const Surface<Real>& surface) {
     recorder_.phase(Phase::shade, pending.kind);
-    const EmitterSample<Real> sample =
-        emitter_at<Real>(scene_, emitters_, surface, numbers_, pending.bounce, reach_);
+    const EmitterSample<Real> sample = emitter_at<Real>(scene_, structure_.triangles().cut_outs(), emitters_,
+                                                        surface, numbers_, pending.bounce, reach_);
     if (!sample.light.reaches || !faces(surface, sample.light) ||
         (options_.shadows && in_shadow(surface, sample.light, sample.target, pending.bounce + 1))) {
       return;

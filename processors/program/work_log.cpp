@@ -132,6 +132,9 @@ LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades) {
         case Step::pass:
           ++totals.passes;
           break;
+        case Step::any_hit:
+          ++totals.any_hits;
+          break;
       }
     }
     of_rays.end_ray();

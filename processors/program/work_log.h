@@ -79,6 +79,8 @@ enum class Step : std::uint32_t {
   mailed_leaf,  ///< operand: node; second word: how many of its entries were looked up in the mailboxes;
                 ///< then one bit for each of them, from the lowest bit of the first word on: was it tested?
                 ///< The last word's other bits are 0. At least one was not.
+  any_hit,  ///< operand: material. Whether a hit counts was found out: its coordinates were computed and the
+            ///< material read; the texel that decides follows. Behind the leaf with the triangle.
 };
 
 inline constexpr unsigned operand_bits = 28;
@@ -121,6 +123,8 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
   return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
          step == Step::mailed_leaf || step == Step::cut;
 }
+/// Number of words of an any_hit with its texel.
+inline constexpr std::size_t any_hit_words = 3;
 /// Whether entry number `entry` was tested, according to a mailed_leaf's mask.
 [[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {
   return ((mask[entry / 32] >> (entry % 32)) & 1U) != 0;
@@ -164,6 +168,7 @@ struct LogTotals {
   std::uint64_t shades = 0;
   std::uint64_t lights = 0;
   std::uint64_t texels = 0;
+  std::uint64_t any_hits = 0;
   std::uint64_t cuts = 0;
   std::uint64_t passes = 0;
   std::uint64_t visits_95 = 0;    ///< the least number of visits that 95 % of the rays do not exceed
@@ -173,9 +178,10 @@ struct LogTotals {
   [[nodiscard]] std::uint64_t all_rays() const {
     return std::accumulate(std::begin(rays), std::end(rays), std::uint64_t{0});
   }
-  /// Number of steps that the log records: visits, tests, rays, shades, lights, texels, cuts and passes.
+  /// Number of steps that the log records: visits, tests, rays, shades, lights, texels, cuts, passes
+  /// and questions whether a hit counts.
   [[nodiscard]] std::uint64_t all_steps() const {
-    return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes;
+    return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes + any_hits;
   }
 };
 

@@ -112,10 +112,11 @@ void check_simt(const program::WorkLog& log, const machine::MachineConfig& confi
     return;
   }
   const walk::SimtCounts counts = result.simt.counts();
-  walk::require(config.rt.sort == machine::RaySort::none
-                    ? counts.sorted_rays == 0 && counts.sorted_warps == 0
-                    : counts.sorted_rays == counts.rays && counts.sorted_warps == counts.traces,
-                "each ray that reads a record is sorted, or none is");
+  walk::require(
+      config.rt.sort == machine::RaySort::none
+          ? counts.sorted_rays == 0 && counts.sorted_warps == 0
+          : counts.sorted_rays == counts.rays + counts.returns && counts.sorted_warps == counts.traces,
+      "each ray that reads a record is sorted, or none is");
   walk::require(counts.sorted_rays <= counts.sorted_warps * config.simt.lanes &&
                     counts.sorted_warps <= counts.sorted_rays,
                 "a warp of sorted rays has a ray, and no more rays than lanes");

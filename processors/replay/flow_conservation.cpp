@@ -22,7 +22,7 @@ std::int64_t samples_with_rays(const program::WorkLog& log) {
 }
 
 void check_steps(const program::LogTotals& totals, const cost::StepCounts& steps) {
-  const std::array<std::pair<std::int64_t, std::uint64_t>, 14> pairs = {{
+  const std::array<std::pair<std::int64_t, std::uint64_t>, 15> pairs = {{
       {steps.camera_rays, totals.rays[0]},
       {steps.shadow_rays, totals.rays[1]},
       {steps.reflection_rays, totals.rays[2]},
@@ -37,6 +37,7 @@ void check_steps(const program::LogTotals& totals, const cost::StepCounts& steps
       {steps.texels, totals.texels},
       {steps.cuts, totals.cuts},
       {steps.passes, totals.passes},
+      {steps.any_hits, totals.any_hits},
   }};
   for (const auto& [taken, logged] : pairs) {
     walk::require_equal(taken, static_cast<std::int64_t>(logged), "the steps taken are those of the log");

@@ -145,6 +145,7 @@ void LaneWalk::add(const ShaderCounts& counts, cost::StepCounts& steps) {
   steps.shades += of(ShaderStep::shade);
   steps.lights += of(ShaderStep::light);
   steps.texels += of(ShaderStep::texel);
+  steps.any_hits += of(ShaderStep::any_hit);
   steps.pixels += of(ShaderStep::pixel);
 }
 

@@ -35,13 +35,14 @@ struct Lane {
   std::uint32_t list = 0;  ///< entries of a list that is still to be read
   std::uint32_t ray = 0;   ///< operand of the ray that it holds: orders rays by bounce, then kind
   std::uint32_t rays = 0;  ///< of the pixel, up to and with this one
+  bool goes_back = false;  ///< its ray has been traced before, up to hits that it was asked about
   const std::uint32_t* meets = nullptr;  ///< what its next ray meets (accel/bvh_meets.h), where lanes help
   walk::Origin origin{};                 ///< of its records; kept where it is counted
 };
 
 /// A shader phase counts these steps, each with a price of its own: the kinds of ray, then the others.
-enum class ShaderStep : std::uint8_t { shade = program::ray_kinds, light, texel, pixel };
-inline constexpr std::size_t shader_steps = program::ray_kinds + 4;
+enum class ShaderStep : std::uint8_t { shade = program::ray_kinds, light, texel, any_hit, pixel };
+inline constexpr std::size_t shader_steps = program::ray_kinds + 5;
 using ShaderCounts = std::array<std::int64_t, shader_steps>;
 
 class LaneWalk {
@@ -76,7 +77,12 @@ class LaneWalk {
   /// The first record that a visit to a node reads which tests all that the node lists.
   [[nodiscard]] Record first_record(std::uint32_t node) const;
 
-  /// Takes the lane's shader steps up to and with its next ray, or to the pixel's end; counts them in
+  /// Whether the lane's ray waits for an answer whether hits of it count.
+  [[nodiscard]] static bool waits_for_answer(const Lane& lane) {
+    return lane.word != lane.word_end && program::step_of(*lane.word) == program::Step::any_hit;
+  }
+  /// Takes the lane's shader steps up to and with its next ray, up to the answer whether hits of its ray
+  /// count, with which that goes on, or to the pixel's end; counts them in
   /// `counts` and calls read(kind, record address, bytes) for each material and texel. True when the lane
   /// holds a ray now.
   template <class Read>
@@ -102,7 +108,17 @@ template <class Read>
 bool LaneWalk::shade(Lane& lane, ShaderCounts& counts, const Read& read) const {
   const auto count = [&](ShaderStep step) { ++counts[static_cast<std::size_t>(step)]; };
   const auto material = memory::RecordKind::material;
-  const auto texel = memory::RecordKind::texel;
+  const auto read_material = [&](std::uint32_t number) {
+    lane.origin.level = 0;
+    read(material, input_.layout.address(material, number), input_.layout.record_bytes(material));
+  };
+  const auto take_texel = [&](std::uint32_t texture) {
+    const auto texel = memory::RecordKind::texel;
+    count(ShaderStep::texel);
+    lane.origin.level = 0;
+    read(texel, input_.layout.address(texel, input_.log.texture_begin[texture] + *lane.word++),
+         input_.layout.record_bytes(texel));
+  };
   while (lane.word != lane.word_end) {
     const std::uint32_t word = *lane.word++;
     const std::uint32_t operand = program::operand_of(word);
@@ -111,18 +127,24 @@ bool LaneWalk::shade(Lane& lane, ShaderCounts& counts, const Read& read) const {
         ++counts[program::ray_number_of(operand)];
         lane.ray = operand;
         ++lane.rays;
+        lane.goes_back = false;
         lane.origin.begin_ray(operand);
         return true;
       case program::Step::shade:
         count(ShaderStep::shade);
-        lane.origin.level = 0;
-        read(material, input_.layout.address(material, operand), input_.layout.record_bytes(material));
+        read_material(operand);
         break;
       case program::Step::texel:
-        count(ShaderStep::texel);
-        lane.origin.level = 0;
-        read(texel, input_.layout.address(texel, input_.log.texture_begin[operand] + *lane.word++),
-             input_.layout.record_bytes(texel));
+        take_texel(operand);
+        break;
+      case program::Step::any_hit:
+        count(ShaderStep::any_hit);
+        read_material(operand);
+        take_texel(program::operand_of(*lane.word++));
+        if (!waits_for_answer(lane)) {
+          lane.goes_back = true;
+          return true;
+        }
         break;
       case program::Step::light:
         count(ShaderStep::light);

@@ -262,8 +262,16 @@ void SimtNode::end_test(const WarpLanes& lanes, LaneState from) {
   move(lanes.warp, done, from, LaneState::held);
 }
 
-// Takes a lane to the first record of its ray.
+// Takes a lane to the first record of its ray, or to the next if the ray goes on after an answer.
 bool SimtNode::begin_ray(std::uint32_t warp, std::uint32_t number) {
+  if (lane(warp, number).goes_back) {
+    const std::size_t wishes = wishes_.size();
+    const std::size_t wished = wished_.size();
+    const bool more = next_record(warp, number);
+    wishes_.resize(wishes);  // outside of the unit it has none
+    wished_.resize(wished);
+    return more;
+  }
   if (!stacks_.empty()) {
     stack(warp, number).begin_ray();
   }
@@ -287,6 +295,9 @@ bool SimtNode::next_record(std::uint32_t warp, std::uint32_t number) {
   Lane& its = lane(warp, number);
   const std::uint32_t* const visit = its.word;
   const bool more = shared_.walk.next_record(its, statistics_.steps);
+  if (!more && LaneWalk::waits_for_answer(its)) {
+    return false;
+  }
   if (!spilled_stacks_.empty() && (!more || its.word != visit) &&
       move_stack(warp, number, more ? visit : nullptr)) {
     return true;
@@ -353,6 +364,11 @@ void SimtNode::put_prefetches() {
   }
   wishes_.clear();
   wished_.clear();
+}
+
+// A ray reads its first record, or its first one after an answer.
+void SimtNode::count_ray(std::uint32_t warp, std::uint32_t number) {
+  ++(lane(warp, number).goes_back ? time_.counts().returns : time_.counts().rays);
 }
 
 void SimtNode::end_ray(std::int64_t began) {

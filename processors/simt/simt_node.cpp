@@ -25,6 +25,7 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
   price(ShaderStep::shade, ticks.shade);
   price(ShaderStep::light, ticks.light);
   price(ShaderStep::texel, ticks.texel);
+  price(ShaderStep::any_hit, ticks.any_hit);
   price(ShaderStep::pixel, ticks.pixel);
   const RoundCounts of_round = {ticks.branch, ticks.leaf,        ticks.cut,      ticks.pass,
                                 ticks.test,   ticks.sphere_test, ticks.cone_test};

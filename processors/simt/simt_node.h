@@ -153,6 +153,7 @@ class SimtNode {
   void write_out();
   void give_slots();
   void place(std::uint32_t warp, LaneState state, Lanes lanes);
+  void count_ray(std::uint32_t warp, std::uint32_t number);
   void end_ray(std::int64_t began);
 
   // rt_unit.cpp: warps in the unit.

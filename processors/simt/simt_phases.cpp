@@ -308,7 +308,7 @@ void SimtNode::begin_trace(std::uint32_t number) {
       }
     });
     if (warp.tracing != 0) {
-      time_.counts().rays += count(warp.tracing);
+      for_each_lane(warp.tracing, [&](std::uint32_t member) { count_ray(number, member); });
       warp.members = warp.tracing;
       if (shared_.input.config.rt.sort != machine::RaySort::none) {
         put_into_pool(number);
@@ -351,7 +351,9 @@ bool SimtNode::next_round_records(std::uint32_t number, Lanes lanes) {
         accesses.push_back({record, lane(number, member).origin, place_of(number, member)});
       }
       ++time_.counts().records;
-      time_.counts().rays += (warp.tracing & bit) == 0 ? 1 : 0;
+      if ((warp.tracing & bit) == 0) {
+        count_ray(number, member);
+      }
       warp.tracing |= bit;
       warp.members |= bit;
     } else if (counts != RoundCounts{}) {

@@ -529,6 +529,11 @@ class LogWalker {
         spend(cursor, ticks_.pass, 1);
         return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
                                input_.layout.record_bytes(memory::RecordKind::material), stop);
+      case program::Step::any_hit:
+        ++steps.any_hits;
+        spend(cursor, ticks_.any_hit, 1);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::material, operand,
+                               input_.layout.record_bytes(memory::RecordKind::material), stop);
       case program::Step::light:
         ++steps.lights;
         spend(cursor, ticks_.light, 1);

@@ -30,6 +30,7 @@ struct SimtCounts {
   std::int64_t unit_cycles = 0;
   std::int64_t line_cycles = 0;
   std::int64_t rays = 0;
+  std::int64_t returns = 0;
   std::int64_t ray_cycles = 0;
   std::int64_t longest_ray = 0;
   std::int64_t longest_warp = 0;
@@ -78,9 +79,12 @@ struct SimtCounts {
         C{"line_cycles", "cycle", "sum over cycles of lines under way", &SimtCounts::line_cycles,
           MergeRule::sum, Better::neither},
         C{"rays", "1", "rays that read a record", &SimtCounts::rays, MergeRule::sum, Better::neither},
-        C{"ray_cycles", "cycle", "cycles that these took, from the beginning of their trace phases",
+        C{"returns", "1", "times that a ray read a record after it had been asked whether hits count",
+          &SimtCounts::returns, MergeRule::sum, Better::neither},
+        C{"ray_cycles", "cycle", "cycles that rays took in their trace phases, from the beginning of these",
           &SimtCounts::ray_cycles},
-        C{"longest_ray", "cycle", "the most cycles of a ray", &SimtCounts::longest_ray, MergeRule::maximum},
+        C{"longest_ray", "cycle", "the most cycles of a ray in a trace phase", &SimtCounts::longest_ray,
+          MergeRule::maximum},
         C{"longest_warp", "cycle", "the most cycles of a warp with one packet", &SimtCounts::longest_warp,
           MergeRule::maximum},
         C{"spills", "1", "lines of traversal stacks written to memory (rt.stack)", &SimtCounts::spills},

@@ -114,7 +114,7 @@ void add_speed(std::vector<FigureEntry>& all) {
 Formula all_steps() {
   Formula sum = all_rays();
   for (const std::string_view step :
-       {"branches", "leaves", "tests", "shades", "lights", "texels", "cuts", "passes"}) {
+       {"branches", "leaves", "tests", "shades", "lights", "texels", "cuts", "passes", "any_hits"}) {
     sum = sum + own("steps_" + std::string(step));
   }
   return sum;

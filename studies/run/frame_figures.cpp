@@ -70,6 +70,7 @@ void add_log(figures::FigureParts& parts, const processors::program::LogTotals& 
   add(parts, "log_lights", "contributions of lights added", log.lights);
   add(parts, "log_texels", "texels read", log.texels);
   add(parts, "log_cuts", "nodes taken as one voxel", log.cuts);
+  add(parts, "log_any_hits", "hits of triangles with holes asked about", log.any_hits);
   add(parts, "log_passes", "small nodes too little covered for that", log.passes);
 }
 

@@ -36,13 +36,18 @@ void add(Hash& hash, const scenes::Material& material) {
     hash.add(value);
   }
   hash.add(std::uint64_t{material.texture});
+  if (const scenes::CutOut& cut_out = material.cut_out; cut_out.asks()) {
+    hash.add(cut_out.alpha);
+    hash.add(cut_out.cutoff);
+    hash.add(std::uint64_t{cut_out.texture});
+  }
 }
 
 void add(Hash& hash, const scenes::Texture& texture) {
   hash.add(std::uint64_t{texture.width});
   hash.add(std::uint64_t{texture.height});
-  hash.add(
-      std::uint64_t{(texture.srgb ? 1U : 0U) | (texture.repeat_u ? 2U : 0U) | (texture.repeat_v ? 4U : 0U)});
+  hash.add(std::uint64_t{(texture.srgb ? 1U : 0U) | (texture.repeat_u ? 2U : 0U) |
+                         (texture.repeat_v ? 4U : 0U) | (texture.grey_is_alpha ? 8U : 0U)});
   for (const auto& texel : texture.texels) {
     hash.add(std::uint64_t{std::bit_cast<std::uint32_t>(texel)});
   }

@@ -41,6 +41,7 @@ DatabaseUse database_use(const processors::program::WorkLog& log) {
         case Step::ray:
         case Step::light:
         case Step::texel:
+        case Step::any_hit:
           break;
       }
     }

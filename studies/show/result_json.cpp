@@ -81,9 +81,9 @@ Json figures_json(const run::RunResult& r) {
 }
 
 Json log_json(const processors::program::LogTotals& t) {
-  return {{"bytes", t.bytes},     {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
-          {"lookups", t.lookups}, {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
-          {"cuts", t.cuts},       {"passes", t.passes}};
+  return {{"bytes", t.bytes},       {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
+          {"lookups", t.lookups},   {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
+          {"any_hits", t.any_hits}, {"cuts", t.cuts},         {"passes", t.passes}};
 }
 
 Json use_json(const run::DatabaseUse& use) {

@@ -18,6 +18,7 @@
 #include "accel/structure.h"
 #include "scenes/procedural.h"
 #include "tests/contract/hostile.h"
+#include "tests/support/holed_scene.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/same_bits.h"
@@ -115,22 +116,21 @@ void compare_with_mailboxes(Built& built, const Ray& ray, const Hit& expected) {
   });
 }
 
-/// `rays` rays of each class; returns how many hit something.
-std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corners, std::uint32_t rays,
-                                       std::uint64_t seed) {
-  const auto triangles = std::make_shared<const TriangleSet>(std::move(corners));
-  const accel::BruteForce oracle(triangles);
+/// `rays` rays of each class; returns how many hit something. expected_of(ray): the hit. `all_kinds`: also of
+/// brute force.
+template <class ExpectedOf>
+std::uint64_t compare(const std::shared_ptr<const TriangleSet>& triangles, std::uint32_t rays,
+                      std::uint64_t seed, const ExpectedOf& expected_of, bool all_kinds) {
   std::vector<Built> all = build_all(triangles);
   RayMaker maker(*triangles, all[0].structure->bounds(), seed);
-  accel::NullVisitor visitor;
   std::uint64_t hits = 0;
   for (const Aim aim : tests::all_aims) {
     for (std::uint32_t k = 0; k < rays; ++k) {
       const Ray ray = maker.make(aim);
-      const Hit expected = oracle.closest(ray, visitor);
+      const Hit expected = expected_of(ray);
       hits += expected.found() ? 1U : 0U;
       for (Built& built : all) {
-        if (built.structure->kind() == "none") {
+        if (built.structure->kind() == "none" && !all_kinds) {
           continue;  // the oracle itself
         }
         if (built.structure->topology().nodes.size() == 1 && k % 8 != 0) {
@@ -157,6 +157,15 @@ std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corne
     }
   }
   return hits;
+}
+
+std::uint64_t compare_with_brute_force(std::vector<accel::TriangleCorners> corners, std::uint32_t rays,
+                                       std::uint64_t seed) {
+  const auto triangles = std::make_shared<const TriangleSet>(std::move(corners));
+  const accel::BruteForce oracle(triangles);
+  accel::NullVisitor visitor;
+  return compare(
+      triangles, rays, seed, [&](const Ray& ray) { return oracle.closest(ray, visitor); }, false);
 }
 
 std::vector<accel::TriangleCorners> corners_of(std::string_view scene) {
@@ -187,6 +196,27 @@ INSTANTIATE_TEST_SUITE_P(Structures, SceneContract,
                            name[name.find(':')] = '_';
                            return name + "_" + std::to_string(std::get<1>(tested.param));
                          });
+
+// The triangles of a soup, many of them one behind the other, three quarters of them with textures.
+TEST(HolesContract, SameHitsAsEachTriangleByItself) {
+  scenes::Scene soup;
+  for (const accel::TriangleCorners& corners : tests::hostile_soup(0.0, 3)) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (std::size_t k = 0; k < 9; k += 3) {
+      soup.positions.emplace_back(corners[k], corners[k + 1], corners[k + 2]);
+    }
+    soup.triangles.push_back({{first, first + 1, first + 2}, 0, first / 3});
+  }
+  const scenes::Scene scene = test::holed(std::move(soup));
+  const auto triangles = std::make_shared<const TriangleSet>(scene);
+  ASSERT_NE(triangles->cut_outs(), nullptr);
+  test::NaiveHoles naive(scene);
+  const auto rays = static_cast<std::uint32_t>(test::cases(test::stride(200, 2000)));
+  const std::uint64_t hits = compare(
+      triangles, rays, 5, [&](const Ray& ray) { return naive.closest(ray); }, true);
+  EXPECT_GT(hits, 2 * rays);
+  EXPECT_GT(naive.asked, hits / 2);
+}
 
 struct Soup {
   double offset;

@@ -85,7 +85,11 @@ void check(const scenes::Scene& scene) {
     }
   }
   for (const scenes::Material& material : scene.materials) {
-    promise(material.texture == scenes::no_texture || material.texture < scene.textures.size(), "texture");
+    for (const std::uint32_t texture : {material.texture, material.cut_out.texture}) {
+      promise(texture == scenes::no_texture || texture < scene.textures.size(), "texture");
+    }
+    promise(material.cut_out.alpha >= 0.0 && material.cut_out.alpha <= 1.0 && material.cut_out.cutoff >= 0.0,
+            "holes of a material");
     promise(material.diffuse >= 0.0 && material.reflection >= 0.0 && material.transmission >= 0.0 &&
                 material.ior >= 1.0 && material.shininess >= 1.0,
             "weights of a material");

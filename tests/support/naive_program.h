@@ -78,6 +78,9 @@ inline void count_step(const WorkLog& log, const std::uint32_t* word, StepCounts
     case Step::pass:
       ++steps.passes;
       break;
+    case Step::any_hit:
+      ++steps.any_hits;
+      break;
   }
 }
 
@@ -276,6 +279,10 @@ class NaiveProgram {
         break;
       case Step::shade:
         compute(to, Activity::shading, ticks_.shade);
+        read_material(to, operand);
+        break;
+      case Step::any_hit:
+        compute(to, Activity::shading, ticks_.any_hit);
         read_material(to, operand);
         break;
       case Step::pass:

@@ -67,6 +67,8 @@ struct Lane {
   std::optional<std::uint32_t> ray;  // the operand of the `ray` step whose visits come next
   std::size_t next_ray = 0;          // how many `ray` steps it has taken
   std::size_t rays = 0;              // that it took before this one
+  std::optional<NaiveOnWay> way;     // of its ray, from when that is asked about hits
+  bool goes_back = false;            // its ray has been asked
   bool picked = false;
   bool away = false;      // its ray is in the pool, or in a group
   std::size_t place = 0;  // of its group
@@ -416,7 +418,7 @@ class NaiveSimt final : public sim::EventHandler {
         if (shares() ? !next_shared(node, lane) : lane.at == lane.visits.size()) {
           lane.in = Lane::In::done;
           if (!shares()) {
-            count_ray(node, lane.trace_began);
+            count_ray(node, lane.trace_began, lane.goes_back);
           }
         } else {
           wishing[{group->entered, lane.place}] = &lane.visits[lane.at];
@@ -463,7 +465,7 @@ class NaiveSimt final : public sim::EventHandler {
     }
     NaiveSharedRay& ray = *lane.shared.ray;
     if (--ray.lanes == 0) {
-      count_ray(node, ray.began);
+      count_ray(node, ray.began, false);
     }
     return false;
   }
@@ -499,9 +501,9 @@ class NaiveSimt final : public sim::EventHandler {
     });
   }
 
-  static void count_ray(Node& node, Cycle began) {
+  static void count_ray(Node& node, Cycle began, bool goes_back) {
     const Cycle cycles = node.cycle - began;
-    ++node.counts.rays;
+    ++(goes_back ? node.counts.returns : node.counts.rays);
     node.counts.ray_cycles += cycles;
     node.counts.longest_ray = std::max(node.counts.longest_ray, cycles);
   }
@@ -711,20 +713,28 @@ class NaiveSimt final : public sim::EventHandler {
     std::deque<LookUp> reads;
     for (const std::size_t number : lanes) {
       Lane& lane = warp.lanes[number];
-      lane.ray.reset();
+      const std::optional<std::uint32_t> before = std::exchange(lane.ray, std::nullopt);
+      lane.goes_back = false;
       StepCounts steps;
+      bool asks = false;
       while (!lane.ray && lane.next < lane.words.size()) {
         const std::uint32_t* const word = &lane.words[lane.next];
         program_.count(word, steps);
         if (step_of(*word) == Step::ray) {
           lane.ray = operand_of(*word);
           lane.rays = lane.next_ray++;
-        } else if (step_of(*word) == Step::shade) {
+        } else if (step_of(*word) == Step::shade || step_of(*word) == Step::any_hit) {
           read_lines(program_.material(operand_of(*word)), reads);
         } else if (step_of(*word) == Step::texel) {
           read_lines(program_.texel(operand_of(*word), word[1]), reads);
         }
         lane.next += step_words(word);
+        // The ray goes on with the answer to the last hit that it was asked about.
+        if (std::exchange(asks, step_of(*word) == Step::any_hit) &&
+            (lane.next == lane.words.size() || step_of(lane.words[lane.next]) != Step::any_hit)) {
+          lane.ray = before;
+          lane.goes_back = true;
+        }
       }
       if (!lane.ray && machine_.pixels == Pixels::written) {
         ++steps.pixels;
@@ -879,7 +889,7 @@ class NaiveSimt final : public sim::EventHandler {
         any = any || lane.away;
       } else if (lane.picked) {
         NaiveRay ray = program_.visits(ray_kind_of(*lane.ray), lane.words, lane.next, node.statistics.steps,
-                                       lane.entered, stack_place(node, warp, lane));
+                                       lane.entered, stack_place(node, warp, lane), lane.way);
         lane.visits = std::move(ray.visits);
         node.counts.fills +=
             std::count_if(lane.visits.begin(), lane.visits.end(), [](const NaiveVisit& visit) {
@@ -1017,7 +1027,7 @@ class NaiveSimt final : public sim::EventHandler {
       if (++lane.at < lane.visits.size()) {
         over = false;
       } else if (lane.visits.front().record) {
-        count_ray(node, warp.trace_began);
+        count_ray(node, warp.trace_began, lane.goes_back);
       }
     }
     if (over) {

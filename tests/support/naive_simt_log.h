@@ -45,6 +45,13 @@ struct NaiveRay {
   std::vector<memory::Address> spills;  ///< lines that are written when it is done
 };
 
+/// What is kept of a ray from one stay in the unit to the next: between them it is asked about hits.
+struct NaiveOnWay {
+  NaiveStack stack;
+  std::optional<std::uint32_t> before{};   ///< the node visited last
+  std::optional<std::uint32_t> treelet{};  ///< of the record read last
+};
+
 /// The cycles of a phase, and of one that several lanes take together.
 struct NaiveCycles {
   std::int64_t traversal = 0;
@@ -112,12 +119,17 @@ class NaiveSimtLog {
   }
   /// The records of the visits of a ray that begin at `at`, which moves behind them. Counts their steps.
   /// `entered`: of the branches from here on, if stacks are asked for; what is read is taken off. `place`: of
-  /// the lane's stack in memory.
+  /// the lane's stack in memory. `way`: null for a ray that has not been in the unit; where the visits end
+  /// because it is asked about hits, it is on its way afterwards.
   NaiveRay visits(RayKind ray, std::span<const std::uint32_t> words, std::size_t& at, StepCounts& counted,
-                  std::span<const std::uint32_t>& entered, memory::Address place) const {
+                  std::span<const std::uint32_t>& entered, memory::Address place,
+                  std::optional<NaiveOnWay>& way) const {
     std::vector<NaiveVisit> visits;
     const std::uint32_t line = machine_.reference_bytes();
-    NaiveStack stack(machine_.rt.stack, std::max(1U, line / 8));
+    if (!way) {
+      way = NaiveOnWay{NaiveStack(machine_.rt.stack, std::max(1U, line / 8))};
+    }
+    NaiveStack& stack = way->stack;
     std::vector<memory::Address> spills;  // before the next record
     const auto moves = [&] {              // what the stack has written and read
       for (const std::size_t number : std::exchange(stack.written, {})) {
@@ -125,12 +137,11 @@ class NaiveSimtLog {
       }
       for (const std::size_t number : std::exchange(stack.read, {})) {
         const NaiveRecord record = {memory::RecordKind::node, place + number * line, line, NaiveTest::none};
-        visits.push_back({record, StepCounts{}, {}, visits.back().treelet, std::exchange(spills, {})});
+        visits.push_back({record, StepCounts{}, {}, way->treelet.value_or(0), std::exchange(spills, {})});
       }
     };
-    std::optional<std::uint32_t> before;  // the node visited before
-    StepCounts waiting;                   // steps for the next record
-    bool any = false;                     // of them
+    StepCounts waiting;  // steps for the next record
+    bool any = false;    // of them
     const auto take = [&](const NaiveRecord& of) {
       visits.push_back({of, std::exchange(waiting, StepCounts{}), {}, 0, std::exchange(spills, {})});
       any = false;
@@ -139,11 +150,11 @@ class NaiveSimtLog {
       const std::uint32_t operand = operand_of(words[at]);
       count(&words[at], counted);
       any = true;
-      std::vector<std::vector<NaiveRecord>> wishes = take_entry(operand, before, stack, entered);
+      std::vector<std::vector<NaiveRecord>> wishes = take_entry(operand, way->before, stack, entered);
       moves();
       const std::size_t visit = visits.size();
-      const bool first = visits.empty();
-      const std::uint32_t last = first ? 0 : visits.back().treelet;
+      const bool first = !way->treelet;
+      const std::uint32_t last = way->treelet.value_or(0);
       std::uint32_t treelet = last;
       if (step_of(words[at]) != Step::pass && !treelets_.of_node.empty()) {
         treelet = treelets_.of_node[operand];
@@ -176,17 +187,22 @@ class NaiveSimtLog {
       }
       for (std::size_t i = visit; i < visits.size(); ++i) {
         visits[i].treelet = treelet;
+        way->treelet = treelet;
       }
     }
     if (any) {
       visits.push_back({std::nullopt, waiting, {}});
     }
+    if (at < words.size() && step_of(words[at]) == Step::any_hit) {
+      return {visits, {}};
+    }
     if (machine_.rt.stack > 0 || machine_.prefetch.stack > 0) {
-      push_entered(before, stack, entered);
+      push_entered(way->before, stack, entered);
       while (ray != RayKind::shadow && stack.take()) {
       }
       moves();
     }
+    way.reset();
     return {visits, spills};
   }
   /// The records of a visit to a node, of which so many primitives are tested, each with its own steps.

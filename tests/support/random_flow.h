@@ -76,7 +76,7 @@ inline processors::program::WorkLog random_ray_trees(Random& random, std::uint32
           const auto kind = bounce == 0 ? RayKind::camera : static_cast<RayKind>(pick(random, 1, 4));
           row.words.push_back(make_word(
               Step::ray, processors::program::ray_operand(kind, static_cast<std::uint32_t>(bounce))));
-          append_walk(random, log.topology, log.mailboxes, 0, row.words);
+          append_walk(random, log, 0, row.words);
           if (kind != RayKind::shadow) {
             row.words.push_back(make_word(Step::shade, 0));
           } else if (random() % 2 == 0) {

@@ -48,6 +48,23 @@ inline accel::Topology random_topology(Random& random, std::uint32_t branches, s
   return topology;
 }
 
+/// Now and then a hit or two of the leaf before that were asked about. They follow from the words so far, so
+/// that random machines are those of logs without them.
+inline void append_any_hits(const processors::program::WorkLog& log, sim::ChunkVector<std::uint32_t>& words) {
+  using processors::program::make_word;
+  using processors::program::Step;
+  const auto textures = static_cast<std::uint32_t>(log.texture_begin.size() - 1);
+  Random random(words.size() * 7919 + words.back());
+  for (std::int64_t left = random() % 4 == 0 ? pick(random, 1, 2) : 0; left > 0; --left) {
+    const auto texture = static_cast<std::uint32_t>(random() % textures);
+    const std::uint64_t texels = log.texture_begin[texture + 1] - log.texture_begin[texture];
+    words.push_back(
+        make_word(Step::any_hit, static_cast<std::uint32_t>(random() % (log.materials - log.voxels))));
+    words.push_back(make_word(Step::texel, texture));
+    words.push_back(static_cast<std::uint32_t>(random() % texels));
+  }
+}
+
 /// A log whose words are random but valid.
 inline processors::program::WorkLog random_log(Random& random, std::uint32_t width, std::uint32_t height,
                                                std::uint32_t most_words_a_pixel = 40) {
@@ -94,6 +111,7 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
           case 4:
           case 5:
             row.words.push_back(make_word(Step::leaf, leaf));
+            append_any_hits(log, row.words);
             break;
           case 6:
             if (log.mailboxes && log.topology.nodes[leaf].count > 0) {
@@ -107,6 +125,7 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
               row.words.push_back(make_word(Step::partial_leaf, leaf));
               row.words.push_back(
                   static_cast<std::uint32_t>(pick(random, 1, log.topology.nodes[leaf].count - 1)));
+              append_any_hits(log, row.words);
             }
             break;
           case 7:
@@ -170,11 +189,11 @@ inline void add_random_work(Random& random, accel::Topology& topology) {
 
 /// Appends a ray's walk from a node down: random children, each after its parent; with mailboxes some leaves
 /// of which not all entries are tested.
-inline void append_walk(Random& random, const accel::Topology& topology, bool mailboxes, std::uint32_t number,
+inline void append_walk(Random& random, const processors::program::WorkLog& log, std::uint32_t number,
                         sim::ChunkVector<std::uint32_t>& words) {
   using processors::program::make_word;
   using processors::program::Step;
-  const accel::TopologyNode& node = topology.nodes[number];
+  const accel::TopologyNode& node = log.topology.nodes[number];
   if (random() % 8 == 0) {
     if (random() % 2 == 0 && (!node.leaf || node.count > 0)) {
       words.insert(words.end(), {make_word(Step::cut, number), make_word(Step::shade, 2)});
@@ -185,10 +204,11 @@ inline void append_walk(Random& random, const accel::Topology& topology, bool ma
   if (!node.leaf) {
     words.push_back(make_word(Step::branch, number));
     for (std::int64_t left = pick(random, 0, 3); left > 0; --left) {
-      append_walk(random, topology, mailboxes, node.first + static_cast<std::uint32_t>(random() % node.count),
-                  words);
+      append_walk(random, log, node.first + static_cast<std::uint32_t>(random() % node.count), words);
     }
-  } else if (mailboxes && node.count > 0 && random() % 4 == 0) {
+    return;
+  }
+  if (log.mailboxes && node.count > 0 && random() % 4 == 0) {
     const auto read = static_cast<std::uint32_t>(pick(random, 1, node.count));
     words.insert(words.end(), {make_word(Step::mailed_leaf, number), read,
                                static_cast<std::uint32_t>(pick(random, 0, (1 << read) - 2))});
@@ -198,6 +218,7 @@ inline void append_walk(Random& random, const accel::Topology& topology, bool ma
   } else {
     words.push_back(make_word(Step::leaf, number));
   }
+  append_any_hits(log, words);
 }
 
 /// A log whose rays walk down from the root, with the work of splitting: a machine can build its tree.
@@ -219,7 +240,7 @@ inline processors::program::WorkLog random_tree_log(Random& random, std::uint32_
   }
   log.materials = 3;
   log.voxels = 1;
-  log.texture_begin = {0};
+  log.texture_begin = {0, 30};
   log.topology = random_topology(random, static_cast<std::uint32_t>(pick(random, 0, 14)), log.primitives, 6);
   add_random_work(random, log.topology);
   log.rows.resize(height);
@@ -230,7 +251,7 @@ inline processors::program::WorkLog random_tree_log(Random& random, std::uint32_
         row.words.push_back(
             make_word(Step::ray, processors::program::ray_operand(
                                      static_cast<processors::program::RayKind>(pick(random, 0, 4)), 0)));
-        append_walk(random, log.topology, log.mailboxes, 0, row.words);
+        append_walk(random, log, 0, row.words);
         if (random() % 2 == 0) {
           row.words.push_back(make_word(Step::shade, static_cast<std::uint32_t>(pick(random, 0, 1))));
         }

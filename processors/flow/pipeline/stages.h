@@ -36,6 +36,7 @@ inline constexpr std::array<std::string_view, machine::pipeline_stages> stage_na
   switch (program::step_of(*word)) {
     case program::Step::shade:
     case program::Step::texel:
+    case program::Step::any_hit:
     case program::Step::light:
       return Stage::shade;
     default:

@@ -46,6 +46,8 @@ sim::Ticks compute_time(const program::WorkLog& log, const cost::StepTicks& tick
       return ticks.cut;
     case program::Step::pass:
       return ticks.pass;
+    case program::Step::any_hit:
+      return ticks.any_hit;
   }
   return 0;
 }

@@ -87,6 +87,9 @@ PlanEntry textures(const PlanFacts& facts) {
   choice.fact = choice.exists
                     ? of(used, needs.textures.size(), "textures may colour a point that a ray meets")
                     : "the scene has no textures";
+  if (needs.cut_out > 0) {
+    choice.fact += "; " + std::to_string(needs.cut_out) + " materials are cut out by theirs";
+  }
   return entry_of(PlanItem::textures, facts.keep, std::move(choice));
 }
 

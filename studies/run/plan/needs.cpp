@@ -32,24 +32,40 @@ class Finder {
   }
 
   SceneNeeds find() {
+    find_shading();
+    find_cut_outs();
+    return needs_;
+  }
+
+ private:
+  void find_shading() {
     if (options_.integrator == processors::program::Integrator::rays) {
       needs_.primitives = in_view_.size();
       needs_.materials.resize(scene_.materials.size());
       needs_.textures.resize(scene_.textures.size());
-      return needs_;  // given rays shade nothing
+      return;  // given rays shade nothing
     }
     find_materials();
     find_rays();
     if (processors::program::sends_any_hit_rays(options_.integrator)) {
       only_any_hit_rays();
-      return needs_;
+      return;
     }
     find_textures();
     find_normals();
-    return needs_;
   }
 
- private:
+  // Whatever rays are for, they are asked whether their hits count.
+  void find_cut_outs() {
+    for (const scenes::Material& material : scene_.materials) {
+      if (material.cut_out.asks() && !scene_.uvs.empty()) {
+        needs_.textures[material.cut_out.texture] = true;
+        needs_.coordinates = true;
+        ++needs_.cut_out;
+      }
+    }
+  }
+
   // Surfaces have neither colour nor material for the rays of which any hit will do; lights have a side.
   void only_any_hit_rays() {
     const bool shadows = options_.integrator == processors::program::Integrator::shadow;

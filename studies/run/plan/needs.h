@@ -17,7 +17,7 @@ namespace marti::studies::run {
 struct SceneNeeds {
   std::uint64_t primitives = 0;
   std::vector<bool> materials;  ///< that may be shaded or asked for the light they emit, by index
-  std::vector<bool> textures;   ///< whose texels may count in the image, by index
+  std::vector<bool> textures;   ///< whose texels may count in the image or let rays through, by index
   std::uint64_t lights = 0;
   /// With an intensity other than 0; with asks_emitters() also the emissive triangles, together one light.
   std::uint64_t shining_lights = 0;
@@ -25,14 +25,16 @@ struct SceneNeeds {
   bool reflection_rays = false;
   bool refraction_rays = false;
   bool diffuse_rays = false;
-  bool coordinates = false;  ///< texture coordinates decide a texel, of which the work log keeps the number
-  bool normals = false;      ///< vertex normals can change something
+  bool coordinates =
+      false;  ///< texture coordinates decide a texel: the work log keeps its number, or it is a hole
+  bool normals = false;  ///< vertex normals can change something
 
   // Of the materials that may be shaded:
   std::uint64_t shaded = 0;
   std::uint64_t reflecting = 0;
   std::uint64_t transmitting = 0;
   std::uint64_t textured = 0;             ///< with texture coordinates to go with the texture
+  std::uint64_t cut_out = 0;              ///< of all materials: cut out where a texture says so
   std::uint64_t unlit = 0;                ///< ask for lights, though none adds anything
   std::uint64_t reflecting_beside = 0;    ///< reflecting materials among those that may not be shaded
   std::uint64_t transmitting_beside = 0;  ///< transmitting materials among those that may not be shaded

@@ -191,7 +191,8 @@ RC_GTEST_PROP(RegionWork, OfEveryPixelIsTheComputingOfTheLog, (std::uint64_t see
   sim::Ticks sum = flat.branch * n(totals.branches) + flat.leaf * n(totals.leaves) +
                    flat.lookup * n(totals.lookups) + flat.test * n(totals.tests) +
                    flat.shade * n(totals.shades) + flat.light * n(totals.lights) +
-                   flat.texel * n(totals.texels) + flat.cut * n(totals.cuts) + flat.pass * n(totals.passes);
+                   flat.texel * n(totals.texels) + flat.any_hit * n(totals.any_hits) +
+                   flat.cut * n(totals.cuts) + flat.pass * n(totals.passes);
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += flat.ray[kind] * n(totals.rays[kind]);
   }

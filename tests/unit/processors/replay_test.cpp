@@ -149,8 +149,8 @@ sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
                    ticks.lookup * n(totals.lookups) + ticks.test * tests[0] + ticks.sphere_test * tests[1] +
                    ticks.cone_test * tests[2] + ticks.shade * n(totals.shades) +
                    ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
-                   ticks.cut * n(totals.cuts) + ticks.pass * n(totals.passes) +
-                   ticks.pixel * std::int64_t{log.width} * log.height;
+                   ticks.any_hit * n(totals.any_hits) + ticks.cut * n(totals.cuts) +
+                   ticks.pass * n(totals.passes) + ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }

@@ -45,6 +45,19 @@ inline scenes::Scene glass_and_pictures() {
   return scene;
 }
 
+/// These triangles with holes in half of them.
+inline scenes::Scene with_holes() {
+  scenes::Scene scene = glass_and_pictures();
+  for (std::size_t texel = 0; texel < 30; texel += 1 + texel % 3) {
+    scene.textures[0].texels[texel][3] = 0;
+  }
+  for (const std::size_t material : {1, 3}) {
+    scene.materials[material].texture = 0;
+    scene.materials[material].cut_out = {1.0, 0.5, 0};
+  }
+  return scene;
+}
+
 /// The work logs of small renderings; of bounding volume hierarchies, and of others.
 inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_t height,
                                                bool entered = true) {
@@ -59,7 +72,7 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
     options.height = height;
     options.record = true;
     options.entered = options.ray_words = entered;
-    options.meets = entered && kind == "bvh";
+    options.meets = entered && kind == "bvh" && built.triangles->cut_outs() == nullptr;
     if (options.max_depth == program::RenderOptions{}.max_depth) {
       options.max_depth = 3;
     }
@@ -78,6 +91,10 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
   add(scenes::make_procedural("room:2"), "bvh", {.integrator = program::Integrator::path},
       accel::BvhNodeKind::four);
   add(scenes::make_procedural("balls:0"), "none");
+  add(with_holes(), "octree");
+  add(with_holes(), "bvh", {.integrator = program::Integrator::path});
+  add(with_holes(), "bvh", {.order = accel::WalkOrder::treelet_first, .treelet_records = 6},
+      accel::BvhNodeKind::eight);
   scenes::Scene far = scenes::make_procedural("tetra:4");
   far.camera.eye = far.camera.at + 4.0 * (far.camera.eye - far.camera.at);
   add(far, "octree", {.voxel_cut = 1.0});

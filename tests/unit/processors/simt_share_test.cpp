@@ -64,7 +64,8 @@ void expect_visits_of_the_log(const WorkLog& log) {
         ray->shadow = ray_kind_of(operand_of(word)) == RayKind::shadow;
         meets = meets.subspan(ray->meets.size());
         StepCounts of_log;
-        const auto logged = simt.visits(ray_kind_of(operand_of(word)), words, at, of_log, entered, 0);
+        std::optional<marti::test::NaiveOnWay> way;
+        const auto logged = simt.visits(ray_kind_of(operand_of(word)), words, at, of_log, entered, 0, way);
         const auto found = alone(log, simt, ray);
         StepCounts of_walk;
         ASSERT_EQ(found.visits.size(), logged.visits.size()) << "ray " << rays;

@@ -174,6 +174,7 @@ TEST(RoundTrip, TexturesLightsAndManyMaterials) {
   scene.textures.push_back(texture);
   scene.uvs.resize(scene.positions.size(), glm::dvec2(0.1, 0.75));
   scene.materials[0].texture = 0;
+  scene.materials[0].cut_out = {0.75, 0.25, 0};
   scene.materials[0].emission = {3.0, 0.5, 0.0};
   scene.lights.push_back(
       {LightKind::spot, {1, 2, 3}, glm::normalize(glm::dvec3(1, -2, 0.5)), {9, 3, 1}, true, 7.0, 0.9, 0.4});
@@ -216,7 +217,7 @@ TEST(RoundTrip, RefusesAndLeavesNoHalfFile) {
   EXPECT_NE(refusal(Scene{}, path).find("without triangles"), std::string::npos);
   Scene scene = make_procedural("tetra:1");
   EXPECT_NE(refusal(scene, directory.path() / "missing" / "scene.glb").find("missing"), std::string::npos);
-  scene.textures.push_back({"t", 1, 1, true, true, true, {{0, 0, 0, 0}}, nullptr});
+  scene.textures.push_back({.name = "t", .width = 1, .height = 1, .texels = {{0, 0, 0, 0}}});
   EXPECT_NE(refusal(scene, path).find("no image encoder"), std::string::npos);
   scene.textures.clear();
   scene.positions[0].x = 1e39;

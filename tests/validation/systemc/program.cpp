@@ -101,6 +101,11 @@ void Program::step(std::vector<Operation>& operations) {
       operations.push_back(compute(Activity::traversal, ticks_.cut));
       read_node(operand, operations);
       return;
+    case Step::any_hit:
+      ++steps_.any_hits;
+      operations.push_back(compute(Activity::shading, ticks_.any_hit));
+      operations.push_back(read(RecordKind::material, database_.material(operand)));
+      return;
     case Step::pass:
       ++steps_.passes;
       operations.push_back(compute(Activity::traversal, ticks_.pass));
