@@ -1,7 +1,7 @@
 // All that a ray meets in a bounding volume hierarchy while no hit shortens it, in words. Whatever else is
 // known of hits when a node or primitive comes up, what the ray then visits is found in these words: timing
-// uses them where it decides itself in which order, and by which lanes, nodes are visited (docs/rt-unit.md,
-// Lanes that help each other).
+// uses them where it decides itself in which order, and by which lanes, nodes are visited
+// (docs/internals/rt-unit.md, Lanes that help each other).
 //
 // The first word is the number of words. If the ray meets the root's box, the root follows. A branch is an
 // EnteredChildren of those whose boxes are met, then for each of them, the nearest first, two words: its

@@ -1,4 +1,4 @@
-// Configuration of a SIMT node and its ray-tracing unit (docs/rt-unit.md).
+// Configuration of a SIMT node and its ray-tracing unit (docs/internals/rt-unit.md).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// What rays may be sorted by (docs/rt-unit.md, Sorting rays): where they begin in a grid over the scene, and
-// where they go, as one word.
+// What rays may be sorted by (docs/internals/rt-unit.md, Sorting rays): where they begin in a grid over the
+// scene, and where they go, as one word.
 #pragma once
 
 #include <algorithm>

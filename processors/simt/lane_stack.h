@@ -1,5 +1,6 @@
-// The entries that a lane keeps while its ray walks through a bounding volume hierarchy (docs/rt-unit.md,
-// Prefetching into the unit): children of branches that the ray has entered, which wait for their visits.
+// The entries that a lane keeps while its ray walks through a bounding volume hierarchy
+// (docs/internals/rt-unit.md, Prefetching into the unit): children of branches that the ray has entered,
+// which wait for their visits.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // One lane's way through its pixel's log: which record it reads next while it traces, and what it does in
-// shader code (docs/rt-unit.md, Lanes, packets, phases).
+// shader code (docs/internals/rt-unit.md, Lanes, packets, phases).
 #pragma once
 
 #include <array>

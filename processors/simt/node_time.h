@@ -1,4 +1,5 @@
-// Where a SIMT node's cycles go, and those of its lanes (docs/rt-unit.md, Where the time of a node goes).
+// Where a SIMT node's cycles go, and those of its lanes (docs/internals/rt-unit.md, Where the time of a node
+// goes).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Lines that a node prefetches when it has nothing else to look up, and what became of them (docs/rt-unit.md,
-// Prefetching into the unit).
+// Lines that a node prefetches when it has nothing else to look up, and what became of them
+// (docs/internals/rt-unit.md, Prefetching into the unit).
 #pragma once
 
 #include <algorithm>

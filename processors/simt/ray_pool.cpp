@@ -1,6 +1,6 @@
-// Rays that are sorted before they enter the unit (docs/rt-unit.md, Sorting rays). A group of sorted rays is
-// a warp in the unit: what is known of each of their lanes moves to a place of the group, and back when the
-// group leaves.
+// Rays that are sorted before they enter the unit (docs/internals/rt-unit.md, Sorting rays). A group of
+// sorted rays is a warp in the unit: what is known of each of their lanes moves to a place of the group, and
+// back when the group leaves.
 #include <algorithm>
 #include <tuple>
 #include <utility>

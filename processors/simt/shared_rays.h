@@ -1,4 +1,4 @@
-// Rays that several lanes of a warp trace together (docs/rt-unit.md, Lanes that help each other).
+// Rays that several lanes of a warp trace together (docs/internals/rt-unit.md, Lanes that help each other).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // How many entries of a lane's traversal stack are on chip, and how many lines of them in memory
-// (docs/rt-unit.md, Stacks in memory). What the entries are is known to LaneStack.
+// (docs/internals/rt-unit.md, Stacks in memory). What the entries are is known to LaneStack.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// One SIMT node: what happens in each of its cycles (docs/rt-unit.md, The order of one cycle). It knows no
-// events: its user calls it in cycles in which something is due, and takes what it asks for.
+// One SIMT node: what happens in each of its cycles (docs/internals/rt-unit.md, The order of one cycle). It
+// knows no events: its user calls it in cycles in which something is due, and takes what it asks for.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// SIMT nodes with ray-tracing units (docs/rt-unit.md), as a kind of node of the image scheme.
+// SIMT nodes with ray-tracing units (docs/internals/rt-unit.md), as a kind of node of the image scheme.
 #pragma once
 
 #include <memory>

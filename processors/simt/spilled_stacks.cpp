@@ -1,5 +1,5 @@
-// Traversal stacks of which a lane has so many entries on chip, and the others in memory (docs/rt-unit.md,
-// Stacks in memory).
+// Traversal stacks of which a lane has so many entries on chip, and the others in memory
+// (docs/internals/rt-unit.md, Stacks in memory).
 #include <algorithm>
 
 #include "processors/simt/simt_node.h"

@@ -1,4 +1,5 @@
-// What is counted of SIMT nodes beside what is counted of all nodes. docs/rt-unit.md defines each counter.
+// What is counted of SIMT nodes beside what is counted of all nodes. docs/internals/rt-unit.md defines each
+// counter.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What a SIMT node prefetches and what becomes of it, written for plainness from docs/rt-unit.md.
+// What a SIMT node prefetches and what becomes of it, written for plainness from docs/internals/rt-unit.md.
 #pragma once
 
 #include <algorithm>

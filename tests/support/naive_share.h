@@ -1,5 +1,5 @@
-// Lanes that trace a ray together, written for plainness from docs/rt-unit.md (Lanes that help each other)
-// and accel/bvh_meets.h, which says what a ray meets.
+// Lanes that trace a ray together, written for plainness from docs/internals/rt-unit.md (Lanes that help each
+// other) and accel/bvh_meets.h, which says what a ray meets.
 #pragma once
 
 #include <algorithm>

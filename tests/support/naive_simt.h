@@ -1,6 +1,6 @@
-// A second implementation of SIMT nodes, written from docs/rt-unit.md for plainness: every node takes every
-// cycle, step by step, with lists that are searched. Only the interconnect, the packets, the host, the layout
-// and the prices of steps are the real ones.
+// A second implementation of SIMT nodes, written from docs/internals/rt-unit.md for plainness: every node
+// takes every cycle, step by step, with lists that are searched. Only the interconnect, the packets, the
+// host, the layout and the prices of steps are the real ones.
 #pragma once
 
 #include "processors/replay/replay.h"

@@ -1,4 +1,4 @@
-// A ray's traversal stack, part of which is in memory, written for plainness from docs/rt-unit.md.
+// A ray's traversal stack, part of which is in memory, written for plainness from docs/internals/rt-unit.md.
 #pragma once
 
 #include <cstddef>

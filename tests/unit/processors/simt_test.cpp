@@ -454,7 +454,7 @@ TEST(Simt, SortingALoneWarpTakesItsCyclesAndOneMore) {
   }
 }
 
-// By hand, after docs/rt-unit.md.
+// By hand, after docs/internals/rt-unit.md.
 TEST(Simt, RaysAreWordsByTheirCells) {
   scenes::Bounds box;
   box.include({0.0, 0.0, 0.0});
