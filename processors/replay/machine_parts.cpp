@@ -110,44 +110,61 @@ class Team {
   std::vector<std::thread> others_;
 };
 
-// Whether threads work together: tries both ways for some windows now and then, and goes on with the faster.
-// On a computer with other work threads wait for each other longer than they save.
+// Whether threads work together. On a computer with other work they may wait for each other longer than they
+// save: then one goes on alone, for twice as long each time that trying again was of no use.
 class Pace {
  public:
   [[nodiscard]] bool together() const { return together_; }
 
   // A window is over, with so many events in all.
   void count(std::uint64_t events) {
-    if (++windows_ < (trying_ ? tried : used)) {
+    const auto now = std::chrono::steady_clock::now();
+    if (++windows_ < most_windows && now - since_ < longest) {
       return;
     }
-    const std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now();
     const double pace = static_cast<double>(events - events_) /
                         std::max(1e-9, std::chrono::duration<double>(now - since_).count());
-    if (!trying_) {
-      trying_ = together_ = true;
-    } else if (together_) {
-      pace_together_ = pace;
-      together_ = false;
+    if (together_) {
+      decide(pace);
     } else {
-      together_ = pace_together_ > pace;
-      trying_ = false;
+      alone_ = pace;
+      together_ = rest_ == 0 || --rest_ == 0;
     }
     windows_ = 0;
     events_ = events;
-    since_ = now;
+    since_ = std::chrono::steady_clock::now();
   }
 
  private:
-  static constexpr std::uint32_t tried = 64;
-  static constexpr std::uint32_t used = 4096;
+  // After a stretch of some windows, and not much time, that threads have worked together.
+  void decide(double pace) {
+    if (pace < alone_) {
+      together_ = false;
+      rest_ = next_rest_;
+      next_rest_ = std::min(2 * next_rest_, longest_rest);
+      stretches_ = 0;
+    } else if (stretches_++ % looks_again == 0) {
+      together_ = false;  // for one stretch, to know how fast one thread is
+      if (stretches_ > 1) {
+        next_rest_ = shortest_rest;
+      }
+    }
+  }
+
+  static constexpr std::uint32_t most_windows = 64;
+  static constexpr std::chrono::milliseconds longest{2};
+  static constexpr std::uint32_t looks_again = 64;  // stretches
+  static constexpr std::uint32_t shortest_rest = 64;
+  static constexpr std::uint32_t longest_rest = 1U << 14U;
 
   bool together_ = true;
-  bool trying_ = true;
+  double alone_ = 0.0;  // events a second of one thread
+  std::uint32_t stretches_ = 0;
+  std::uint32_t rest_ = 0;  // stretches that one thread goes on alone
+  std::uint32_t next_rest_ = shortest_rest;
   std::uint32_t windows_ = 0;
   std::uint64_t events_ = 0;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-  double pace_together_ = 0.0;  // events a second
 };
 
 // Clusters in a row with all that only they use.

@@ -26,8 +26,8 @@ constexpr const char* curve = R"html(<p id="axes">
 constexpr const char* settings = R"html(<p>
 <button type="button" id="pin">Pin this machine</button>
 <button type="button" id="reset">All settings as in the configuration</button>
-<a id="save" href="data:," download="explored.toml">Save as configuration</a>
-<a id="save-sweep" href="data:," download="explored-sweep.toml">Save the curve as sweep</a>
+<a id="save" download="explored.toml">Save as configuration</a>
+<a id="save-sweep" download="explored-sweep.toml">Save the curve as sweep</a>
 <button type="button" id="save-report">Save as report</button>
 <button type="button" id="end">End marti explore</button>
 </p>

@@ -26,6 +26,9 @@ HttpResponse json_response(std::string json) { return {200, json_type, std::move
 
 HttpResponse nothing(int status) { return {.status = status}; }
 
+// To a request whose place a newer one takes. No status of an error, which browsers would report.
+constexpr int superseded = 204;
+
 struct Request {
   Settings settings;
   Asker asker = Asker::reader;
@@ -162,7 +165,7 @@ HttpResponse ExploreService::answer(const HttpHead& head, const std::string& bod
       });
     }
   } catch (const sim::Stopped&) {
-    return nothing(409);
+    return nothing(superseded);
   } catch (const std::exception& error) {
     const Json json = {{"error", "internal error: " + std::string(error.what())}, {"key", nullptr}};
     return {500, json_type, json.dump(-1, ' ', false, Json::error_handler_t::replace)};
@@ -180,7 +183,7 @@ HttpResponse ExploreService::simulate(const std::string& body, const Simulate& w
   }
   const std::optional<Turns::Turn> turn = turns_.take(request->asker);
   if (!turn) {
-    return nothing(409);
+    return nothing(superseded);
   }
   return what(request->settings, &turn->meter());
 }

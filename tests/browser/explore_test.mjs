@@ -50,8 +50,7 @@ async function open(hash = "", address = served.address) {
   const faults = [];
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("console", (message) => {
-    // A request whose place a newer one takes has status 409, which the browser reports.
-    if (message.type() === "error" && !message.text().includes("409")) faults.push(message.text());
+    if (message.type() === "error") faults.push(message.text());
   });
   page.on("request", (request) => {
     if (!request.url().startsWith(address) && !/^(data|blob):/.test(request.url())) faults.push(request.url());
@@ -132,6 +131,7 @@ describe("the page of marti explore", () => {
       const refused = await answer_of(page, { "machine.nodes": "0" });
       const said = page.locator(".control", { has: control(page, "machine.nodes") }).getByRole("alert");
       assert.equal(await said.textContent(), refused.error);
+      assert.equal(await page.locator("#save[href], #save-sweep[href]").count(), 0, "a machine that cannot be is saved");
       await assert.rejects(run(config, { "machine.nodes": "0" }), (error) => error.stderr.trim() === `marti: ${refused.error}`);
       await control(page, "machine.nodes").fill("2");
       await answer_of(page, { "machine.nodes": "2" });

@@ -42,7 +42,8 @@ explore.answer = (() => {
         const button = element("button", { type: "button", textContent: "Try" });
         button.setAttribute("aria-label", `Try ${text}`);
         button.addEventListener("click", () => explore.state.set(Object.fromEntries(keys.map(([name, , to]) => [name, to]))));
-        return element("li", {}, `${text}: frame ${percent(step.saved)} shorter `, button);
+        const noise = step.within_noise ? ", no more than another order of packets may save" : "";
+        return element("li", {}, `${text}: frame ${percent(step.saved)} shorter${noise} `, button);
       }),
     );
   }
@@ -74,6 +75,7 @@ explore.answer = (() => {
     /** Says why there is no such machine; the page keeps showing the one before. */
     refuse(error) {
       at("state").textContent = `This machine cannot be: ${error}`;
+      show_helps(null);
       document.documentElement.classList.add("old");
     },
     /** A frame time by the model, shown until the exact answer is there; what else is shown is of the machine before. */

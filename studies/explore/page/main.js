@@ -8,6 +8,7 @@
   const model_after = 80;  // ms, so that there is a figure within the patience
   const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
   let asked = 0;
+  let ended = false;
   let running = null;  // the answer that is waited for: since when, and its end
 
   /** What follows the answer: what helps, then machines that are shown and not known yet. */
@@ -50,6 +51,7 @@
   }
 
   async function update(now) {
+    if (ended) return;
     const mine = ++asked;
     background.stop();
     controls.show(now);
@@ -73,8 +75,10 @@
     if (!found) return;
     const took = performance.now() - begun;
     answer.waiting(before ? "exact; simulated before" : `exact; answered in ${Math.round(took)} ms`);
-    if ("error" in found) answer.refuse(found.error);
-    else answer.show(found, server.known({})?.figures);
+    if ("error" in found) {
+      answer.refuse(found.error);
+      save.nothing();
+    } else answer.show(found, server.known({})?.figures);
     controls.judge(found);
     explore.answered = { settings: now.settings, took, answer: found };  // read by tests
     if (mine === asked && !("error" in found)) {
@@ -90,6 +94,7 @@
   state.follow(update);
   document.getElementById("pin").addEventListener("click", () => {
     const { pins, settings } = state.now;
+    if (!server.known(settings)?.figures) return;  // there is no such machine, or none yet
     if (!pins.some((pin) => state.text(pin) === state.text(settings))) state.change({ pins: [...pins, settings] });
   });
   document.getElementById("reset").addEventListener("click", () => state.change({ settings: {} }));
@@ -106,10 +111,15 @@
     }
   });
   document.getElementById("end").addEventListener("click", async () => {
+    ended = true;
     background.stop();
     await server.end();
+    for (const control of document.querySelectorAll("#settings :is(button, input, select), #axes :is(input, select), #steps button")) control.disabled = true;
     answer.waiting("marti explore has ended; this page shows its last answer");
   });
-  await server.time({});
+  controls.show(state.now);
+  const told = wait_aloud({});
+  await server.time({}).catch(() => null);  // update() says what is wrong
+  told();
   update(state.now);
 })();

@@ -35,6 +35,10 @@ explore.save = (() => {
 
   return {
     report: (page) => marti.charts.save("explored.html", "text/html", page),
+    /** There is no such machine. */
+    nothing() {
+      for (const id of ["save", "save-sweep"]) document.getElementById(id).removeAttribute("href");
+    },
     show(keys, answer, state) {
       offer("save", configuration(keys, answer));
       offer("save-sweep", sweep(keys, answer, state));

@@ -12,7 +12,7 @@ explore.server = (() => {
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(content),
     });
-    if ([204, 409].includes(response.status)) return null;
+    if (response.status === 204) return null;
     if (!response.ok && response.status !== 500) throw new Error(`marti answered ${response.status}`);
     return response;
   }
