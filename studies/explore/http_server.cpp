@@ -192,14 +192,15 @@ class Httplib : public HttpServer {
   }
 
   int bind(int port) override {
+    const int asked = port;
     if (port == 0) {
       port = server_.bind_to_any_port("127.0.0.1");
     } else if (!server_.bind_to_port("127.0.0.1", port)) {
       port = -1;
     }
     if (port < 0) {
-      throw sim::UserError(
-          "explore: the port cannot be had; another program may use it (--port 0 takes a free one)");
+      throw sim::UserError("explore: port " + std::to_string(asked) +
+                           " cannot be had; another program may use it (--port 0 takes a free one)");
     }
     server_.let_many_wait();
     return port;

@@ -427,7 +427,9 @@ processors::machine::MachineConfig read_machine(sim::Config& config) {
   machine.clusters = count(config, "machine.clusters");
   machine.nodes = count(config, "machine.nodes");
   if (std::uint64_t{machine.clusters} * machine.nodes > processors::machine::most_nodes) {
-    config.fail("machine.nodes", "clusters times nodes must be at most 2^24");
+    config.fail("machine.nodes", "clusters times nodes must be at most 2^24; " +
+                                     std::to_string(machine.clusters) + " times " +
+                                     std::to_string(machine.nodes) + " is more");
   }
   machine.clock = clock(config, "node.clock");
   machine.word_bytes = static_cast<std::uint32_t>(config.size("node.word"));
