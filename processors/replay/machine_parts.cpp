@@ -138,7 +138,7 @@ class Pace {
  private:
   // After a stretch of some windows, and not much time, that threads have worked together.
   void decide(double pace) {
-    if (pace < alone_) {
+    if (pace < clearly_less * alone_) {
       together_ = false;
       rest_ = next_rest_;
       next_rest_ = std::min(2 * next_rest_, longest_rest);
@@ -151,6 +151,8 @@ class Pace {
     }
   }
 
+  // Stretches of a frame differ in how much an event takes.
+  static constexpr double clearly_less = 0.6;
   static constexpr std::uint32_t most_windows = 64;
   static constexpr std::chrono::milliseconds longest{2};
   static constexpr std::uint32_t looks_again = 64;  // stretches
