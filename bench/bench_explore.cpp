@@ -73,16 +73,15 @@ void run(bench::Report& report, const char* size, int repeats, const char* file)
         for (int repeat = 0; repeat < repeats; ++repeat) {
           forget(session);
           const Timed model = timed([&] { return session.modelled(settings); });
-          const Timed exact =
-              timed([&] { return session.answer(settings, studies::helps::Measuring::none); });
+          const Timed exact = timed([&] { return session.shown(settings, studies::helps::Measuring::none); });
           const Timed help =
-              timed([&] { return session.answer(settings, studies::helps::Measuring::within_budget); });
+              timed([&] { return session.shown(settings, studies::helps::Measuring::within_budget); });
           models.push_back(model.milliseconds);
           answers.push_back(exact.milliseconds);
           helps.push_back(help.milliseconds);
-          error =
-              model.answer["end"].get<double>() / exact.answer["figures"]["machine"]["end"].get<double>() -
-              1.0;
+          error = model.answer["end"].get<double>() /
+                      exact.answer["result"]["figures"]["machine"]["end"].get<double>() -
+                  1.0;
         }
         std::printf("%6s %7s %-14s", nodes, cache, kind);
         for (const std::vector<double>& times : {models, answers, helps}) {

@@ -207,7 +207,7 @@ CutOut Materials::cut_out_of(const tinygltf::Material& source, std::uint32_t tex
   if (!blends && source.alphaMode != "MASK") {
     if (source.alphaMode != "OPAQUE") {
       left_out_.replace("alpha modes that glTF does not have, by OPAQUE",
-                        sim::shown(model_.path().string()) + ": " + name + ": there is no alpha mode " + "'" +
+                        sim::shown(model_.path().string()) + ": " + name + ": there is no alpha mode '" +
                             sim::shown(source.alphaMode) + "'");
     }
     return {};

@@ -52,8 +52,8 @@ struct TextureSample {
   std::uint32_t texel = 0;  ///< the texel that was read: row * width + column
 };
 
-/// The texture coordinates at a point of a triangle, from its barycentric weights. Component by component, so
-/// that whoever asks reads the same texel. Real: the scalar of the arithmetic.
+/// The texture coordinates at a point of a triangle, from its barycentric weights. Shading
+/// and the test for holes both use it, so both read one texel. Real: the scalar of the arithmetic.
 template <class Real>
 [[nodiscard]] glm::dvec2 mixed_uv(const std::array<glm::dvec2, 3>& uv, const Real (&weight)[3]) {
   const auto mix = [&](int axis) {

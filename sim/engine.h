@@ -63,7 +63,7 @@ class Engine {
   /// run_all() for the events before `end` alone.
   template <class Handler>
   void run_before(Handler& handler, Ticks end);
-  /// The time of the earliest event that is pending; the largest time where there is none.
+  /// The time of the earliest event that is pending; the largest time if no event is.
   [[nodiscard]] Ticks next_time() { return queue_.front().time; }
   /// The place, among all events of a simulation, of what is done in the event that run_before() handles now.
   /// Where an event has had others of its own time posted that come before it in order, these are handled

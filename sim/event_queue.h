@@ -84,7 +84,7 @@ class EventQueue {
     heap_.look_ahead(later, soon);
   }
 
-  /// The earliest event; Event::never() where there is none.
+  /// The earliest event; Event::never() if the queue is empty.
   [[nodiscard]] Event front() { return std::min(tree_.front(), std::min(lane_.front(), first_)); }
 
   /// Removes and returns the earliest event. The queue must not be empty.

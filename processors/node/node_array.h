@@ -37,9 +37,9 @@ class NodeArray : public sim::EventHandler {
   /// Handles all events of `engine`. No limit is needed: each event moves a node or a ray on by at least one
   /// step of a finite log, or is the only one at its node or cluster that finds nothing to do.
   virtual void run_all(sim::Engine& engine) { engine.run(std::numeric_limits<std::uint64_t>::max()); }
-  /// For nodes of a part of a machine (walk::MachinePart): run_all() for the events before `end` alone; the
-  /// answer to a request of a packet, std::nullopt where none was left; and, after the run, when the whole
-  /// machine was done. Only for nodes for which can_be_parts() holds.
+  /// For nodes of a part of a machine (walk::MachinePart), if can_be_parts(). run_before(): run_all() for the
+  /// events before `end`. grant(): the answer to a request of a packet, std::nullopt if none was left.
+  /// end_not_before(): after the run, when the whole machine was done.
   virtual void run_before(sim::Engine& engine, sim::Ticks end);
   virtual void grant(std::uint32_t node, const std::optional<Grant>& grant);
   virtual void end_not_before(sim::Ticks end);

@@ -148,11 +148,11 @@ struct Frame {
 };
 
 /// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
-/// all of them). Throws UserError for options out of range, for a voxel cut without an octree or in floats,
-/// for a voxel cut of triangles with
-/// holes, for path tracing with a voxel cut or a min_weight, for given rays with a voxel cut, several samples
-/// or a window, or of a scene that has none, and when recording a scene whose nodes, materials, lights or
-/// textures do not fit the log's 28-bit operands.
+/// all of them). Throws UserError for options out of range; for a voxel cut without an octree, in floats, or
+/// of triangles with holes; for path tracing with a voxel cut or a min_weight; for given rays with a voxel
+/// cut, several samples or a window, or of a scene that has none; for what each ray meets (`meets`) of
+/// triangles with holes; and when recording a scene whose nodes, materials, lights or textures do not fit the
+/// log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);

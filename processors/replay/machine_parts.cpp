@@ -44,7 +44,7 @@ bool draws_victims(const machine::MachineConfig& config) {
 // Threads that do a piece of work together again and again, each time only for some microseconds.
 class Team {
  public:
-  // work(worker, workers) is the share of one of so many workers.
+  // share(worker, workers) does the share of one of so many workers.
   Team(unsigned threads, std::function<void(unsigned, unsigned)> share) : share_(std::move(share)) {
     for (unsigned worker = 1; worker < threads; ++worker) {
       others_.emplace_back([this, worker] { help(worker); });
@@ -78,8 +78,6 @@ class Team {
     for (int looks = 0; !ready(); ++looks) {
       if (looks >= most_looks) {
         give_away();
-      } else {
-        std::atomic_signal_fence(std::memory_order_seq_cst);
       }
     }
   }

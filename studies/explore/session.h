@@ -42,7 +42,7 @@ class Session {
   [[nodiscard]] std::string answer(const Settings& settings, helps::Measuring what_helps,
                                    sim::WorkMeter* meter = nullptr) const;
 
-  /// The same as "result", and as "page" what the report of this machine shows (report::page_parts); without
+  /// answer() as "result", and as "page" what the report of this machine shows (report::page_parts); without
   /// charts where the program has no scripts that draw them.
   [[nodiscard]] std::string shown(const Settings& settings, helps::Measuring what_helps,
                                   sim::WorkMeter* meter = nullptr) const;

@@ -195,8 +195,8 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
 // What is told while the machine and one node are timed. Only of a machine that takes long it is said why one
 // thread times it.
 std::string timing_of(const processors::machine::MachineConfig& machine) {
-  constexpr std::uint32_t many_nodes = 1024;
-  const char* const why = processors::replay::why_one_thread(machine, 0);
+  const std::uint32_t many_nodes = processors::replay::ReplayOptions().fewest_nodes_of_parts;
+  const char* const why = processors::replay::why_one_thread(machine, many_nodes);
   return "timing the machine and one node" + (machine.all_nodes() < many_nodes || why == nullptr
                                                   ? std::string()
                                                   : std::string(", each on one thread, because ") + why);

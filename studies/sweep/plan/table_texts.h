@@ -24,7 +24,7 @@ class TableTexts {
   [[nodiscard]] std::string text_or_none(std::string_view key) const;
   /// A text of 1 to 200 characters in one line.
   [[nodiscard]] const std::string& line(std::string_view key) const;
-  /// The entry itself, of any type. Throws when there is none.
+  /// The key's entry, with a value of any type. Throws if the table has no such key.
   [[nodiscard]] const sim::DocumentEntry& entry(std::string_view key) const;
   /// Where the key's value is.
   [[nodiscard]] sim::Place place(std::string_view key) const;
