@@ -64,42 +64,56 @@ double half_area(const scenes::Bounds& box) {
 
 Bvh Bvh::build(std::shared_ptr<const TriangleSet> triangles, const BvhOptions& options) {
   sim::ensure(triangles != nullptr, "a bvh needs a triangle set, even an empty one");
+  const RootFrame frame = make_frame(*triangles);
+  const std::uint32_t count = triangles->size();
+  return build(std::move(triangles), {0, count}, frame, options);
+}
+
+Bvh Bvh::build(std::shared_ptr<const TriangleSet> triangles, PrimitiveRange range, const RootFrame& frame,
+               const BvhOptions& options) {
   require_range(kind_name, "max_objects", options.max_objects, 1, bvh_largest_leaf(options.node));
   require_range(kind_name, "bins", options.bins, 2, bvh_most_bins);
   Bvh tree;
   tree.triangles_ = std::move(triangles);
   tree.options_ = options;
-  tree.frame_ = make_frame(*tree.triangles_);
+  tree.frame_ = frame;
   tree.topology_.nodes.push_back({});
-  if (tree.triangles_->size() == 0) {
+  if (range.count == 0) {
     return tree;
   }
   tree.space_ = BvhSpace(tree.frame_);
 #ifdef MARTI_AVX2
   tree.vectors_ = sim::has_avx2();
 #endif
-  tree.number_nodes(build_binary_bvh(*tree.triangles_, tree.space_, options));
+  tree.number_nodes(build_binary_bvh(*tree.triangles_, range, tree.space_, options));
   tree.order_records();
-  switch (options.node) {
-    case BvhNodeKind::two:
-      tree.make_records(tree.two_);
-      break;
-    case BvhNodeKind::four:
-      tree.make_records(tree.four_);
-      break;
-    case BvhNodeKind::six:
-      tree.make_records(tree.six_);
-      break;
-    case BvhNodeKind::eight:
-      tree.make_records(tree.eight_);
-      break;
-    case BvhNodeKind::eight_quantised:
-      tree.make_records(tree.quantised_);
-      break;
-  }
+  with_records(tree, [&tree](auto& records) { tree.make_records(records); });
   tree.boxes_ = {};
   tree.place_ = {};
   return tree;
+}
+
+// Puts the nodes behind those of `whole`, the root on `level`. Walks tell of them by their numbers there.
+void Bvh::join(Topology& whole, unsigned level) {
+  root_ = static_cast<std::uint32_t>(whole.nodes.size());
+  const auto first_entry = static_cast<std::uint32_t>(whole.entries.size());
+  const auto down = static_cast<std::uint8_t>(level - 1);
+  for (const TopologyNode& node : topology_.nodes) {
+    whole.nodes.push_back({node.first + (node.leaf ? first_entry : root_), node.count,
+                           static_cast<std::uint8_t>(node.level + down), node.leaf});
+  }
+  whole.entries.insert(whole.entries.end(), topology_.entries.begin(), topology_.entries.end());
+  topology_ = {};
+  with_records(*this, [this](auto& records) {
+    for (auto& record : records) {
+      if constexpr (requires { record.first; }) {
+        record.first += root_;
+      }
+    }
+  });
+  for (std::uint32_t& first : first_) {
+    first += root_;
+  }
 }
 
 void Bvh::number_nodes(const BvhBinaryTree& binary) {

@@ -34,12 +34,18 @@ class Bvh : public Queries<Bvh> {
   [[nodiscard]] static Bvh build(std::shared_ptr<const TriangleSet> triangles,
                                  const BvhOptions& options = {});
 
+  /// A tree over a part of the set, which `frame` encloses: a mesh of which a two-level tree has instances.
+  [[nodiscard]] static Bvh build(std::shared_ptr<const TriangleSet> triangles, PrimitiveRange range,
+                                 const RootFrame& frame, const BvhOptions& options);
+
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const Bvh& bvh() const { return *this; }
   [[nodiscard]] const BvhOptions& options() const { return options_; }
   [[nodiscard]] const scenes::Bounds& bounds() const { return frame_.box; }
   [[nodiscard]] Traversal traversal() const { return traversal_of(options_.node); }
+  /// The root's number: 0, but of a mesh of a two-level tree.
+  [[nodiscard]] std::uint32_t root() const { return root_; }
 
   /// The expected cost of a random ray that meets the root's box: the sum over the branches of the chance to
   /// meet their boxes, plus that over the leaves times their numbers of primitives. A chance is the surface
@@ -54,6 +60,7 @@ class Bvh : public Queries<Bvh> {
   template <class Real>
   friend class BvhMeets;    // bvh_meets.h
   friend class OrderedBvh;  // bvh_order.h
+  friend class TwoLevelBvh;
   friend class Queries<Bvh>;
   Bvh() = default;
 
@@ -61,6 +68,7 @@ class Bvh : public Queries<Bvh> {
   void order_records();
   template <class Node>
   void make_records(sim::LargeVector<Node>& records);
+  void join(Topology& whole, unsigned level);
 
   template <class Node>
   [[nodiscard]] BvhView<Node> view(const sim::LargeVector<Node>& records) const {
@@ -70,24 +78,29 @@ class Bvh : public Queries<Bvh> {
             .triangles = triangles_.get(),
             .frame = &frame_,
             .space = space_,
+            .root = root_,
             .vectors = vectors_};
   }
   /// Calls `f` with the view of this tree's kind of records.
   template <class F>
   decltype(auto) with_view(F&& f) const {
-    switch (options_.node) {
+    return with_records(*this, [&](const auto& records) { return f(view(records)); });
+  }
+  template <class Tree, class F>
+  static decltype(auto) with_records(Tree& tree, F&& f) {
+    switch (tree.options_.node) {
       case BvhNodeKind::two:
-        return f(view(two_));
+        return f(tree.two_);
       case BvhNodeKind::four:
-        return f(view(four_));
+        return f(tree.four_);
       case BvhNodeKind::six:
-        return f(view(six_));
+        return f(tree.six_);
       case BvhNodeKind::eight:
-        return f(view(eight_));
+        return f(tree.eight_);
       case BvhNodeKind::eight_quantised:
         break;
     }
-    return f(view(quantised_));
+    return f(tree.quantised_);
   }
 
   template <bool Any, class Real, class Visitor>
@@ -105,7 +118,8 @@ class Bvh : public Queries<Bvh> {
   std::vector<std::uint32_t> first_;  ///< see BvhView
   std::vector<BvhPrimitive> primitives_;
   std::uint32_t branches_ = 0;
-  bool vectors_ = false;  ///< walks on vectors can be used
+  std::uint32_t root_ = 0;  ///< its number
+  bool vectors_ = false;    ///< walks on vectors can be used
   /// By node number: a branch's record, a leaf's first BvhPrimitive; only while the tree is built.
   std::vector<std::uint32_t> place_;
   sim::LargeVector<BvhNode<2>> two_;

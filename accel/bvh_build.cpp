@@ -114,12 +114,12 @@ Plane best_plane(const Bins& bins, const Binning& binning) {
 
 class BinaryBuilder {
  public:
-  BinaryBuilder(const TriangleSet& triangles, const BvhSpace& space, const BvhOptions& options,
-                BvhBinaryTree& tree)
-      : triangles_(triangles), space_(space), options_(options), tree_(tree) {}
+  BinaryBuilder(const TriangleSet& triangles, PrimitiveRange range, const BvhSpace& space,
+                const BvhOptions& options, BvhBinaryTree& tree)
+      : triangles_(triangles), range_(range), space_(space), options_(options), tree_(tree) {}
 
   void run() {
-    const std::uint32_t count = triangles_.size();
+    const std::uint32_t count = range_.count;
     require_tree(options_.memory,
                  std::uint64_t{count} *
                      (sizeof(Reference) + 2 * sizeof(BvhBinaryNode) + sizeof(Split) + sizeof(std::uint32_t)),
@@ -127,9 +127,9 @@ class BinaryBuilder {
     tree_.nodes.reserve(2 * std::size_t{count} - 1);
     references_.resize(count);
     parallel_pieces(count, references_at_once, options_.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t id = begin; id < end; ++id) {
-        references_[id] = {bvh_box_of(space_, triangles_, static_cast<std::uint32_t>(id)),
-                           static_cast<std::uint32_t>(id)};
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t id = range_.first + static_cast<std::uint32_t>(i);
+        references_[i] = {bvh_box_of(space_, triangles_, id), id};
       }
     });
     BvhBinaryNode root;
@@ -254,6 +254,7 @@ class BinaryBuilder {
   }
 
   const TriangleSet& triangles_;
+  PrimitiveRange range_;
   const BvhSpace& space_;
   const BvhOptions& options_;
   BvhBinaryTree& tree_;
@@ -263,10 +264,10 @@ class BinaryBuilder {
 
 }  // namespace
 
-BvhBinaryTree build_binary_bvh(const TriangleSet& triangles, const BvhSpace& space,
+BvhBinaryTree build_binary_bvh(const TriangleSet& triangles, PrimitiveRange range, const BvhSpace& space,
                                const BvhOptions& options) {
   BvhBinaryTree tree;
-  BinaryBuilder(triangles, space, options, tree).run();
+  BinaryBuilder(triangles, range, space, options, tree).run();
   return tree;
 }
 

@@ -35,8 +35,8 @@ struct BvhBinaryTree {
   std::vector<std::uint32_t> entries;  ///< primitive ids
 };
 
-/// Throws UserError when the memory does not suffice.
-[[nodiscard]] BvhBinaryTree build_binary_bvh(const TriangleSet& triangles, const BvhSpace& space,
-                                             const BvhOptions& options);
+/// Over one primitive or more of a set. Throws UserError when the memory does not suffice.
+[[nodiscard]] BvhBinaryTree build_binary_bvh(const TriangleSet& triangles, PrimitiveRange range,
+                                             const BvhSpace& space, const BvhOptions& options);
 
 }  // namespace marti::accel

@@ -17,10 +17,10 @@
 namespace marti::accel {
 
 /// One branch. True when an occlusion query found its hit.
-template <bool Any, class Real, class Node, class Visitor>
-bool walk_bvh_far_branch(const BvhView<Node>& view, const FarRay& far, std::uint32_t number,
-                         std::uint32_t record, const RaySetup<Real>& setup, Best<Real>& best,
-                         Visitor& visitor) {
+template <bool Any, class Real, class View, class Visitor>
+bool walk_bvh_far_branch(const View& view, const FarRay& far, std::uint32_t number, std::uint32_t record,
+                         const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
+  using Node = typename View::Record;
   visitor.branch(number);
   const Node& node = view.nodes[record];
   std::array<BvhWaiting<double>, Node::width> met;
@@ -58,18 +58,18 @@ bool walk_bvh_far_branch(const BvhView<Node>& view, const FarRay& far, std::uint
   return false;
 }
 
-template <bool Any, class Real, class Node, class Visitor>
-bool walk_bvh_far(const BvhView<Node>& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
+template <bool Any, class Real, class View, class Visitor>
+bool walk_bvh_far(const View& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
                   Visitor& visitor) {
   const scenes::Bounds& box = view.frame->box;
   if (box.empty()) {
     return false;
   }
-  const FarRay far(*view.frame, ray, std::is_same_v<Real, float>);
+  const FarRay far(*view.frame, ray, std::is_same_v<Real, float>, view.far_rounding);
   if (!far.may_hit(far.span(box.lo, box.hi), plain(best.t))) {
     return false;
   }
-  return walk_bvh_far_branch<Any>(view, far, 0U, 0U, setup, best, visitor);
+  return walk_bvh_far_branch<Any>(view, far, view.root, 0U, setup, best, visitor);
 }
 
 }  // namespace marti::accel

@@ -37,13 +37,17 @@ inline constexpr double bvh_largest_reciprocal = 0x1p60;
 /// The data of a walk, by reference.
 template <class Node>
 struct BvhView {
+  using Record = Node;
+
   const Node* nodes;           ///< nodes[0] is the root's record
   const std::uint32_t* first;  ///< by record: the first child's number, where records do not hold it
   const BvhPrimitive* primitives;
   const TriangleSet* triangles;
   const RootFrame* frame;
   BvhSpace space;
-  bool vectors;  ///< sim::has_avx2()
+  std::uint32_t root;         ///< the root's number
+  bool vectors;               ///< sim::has_avx2()
+  double far_rounding = 1.0;  ///< how often the usual error of rays from far away
 
   [[nodiscard]] std::uint32_t first_child(std::uint32_t record) const {
     if constexpr (requires { Node::first; }) {

@@ -100,17 +100,18 @@ template <BvhInBytes Node, class Float>
 }
 
 /// The walk itself. True when an occlusion query found its hit.
-template <bool Any, class Real, class Node, class Visitor>
-bool walk_bvh(const BvhView<Node>& view, const BvhRay<BoxFloat<Real>>& ray, const BvhDistance<Real>& distance,
+template <bool Any, class Real, class View, class Visitor>
+bool walk_bvh(const View& view, const BvhRay<BoxFloat<Real>>& ray, const BvhDistance<Real>& distance,
               const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) {
   using std::max;
   using std::min;
+  using Node = typename View::Record;
   using Float = BoxFloat<Real>;
   using Waiting = BvhWaiting<Float>;
   std::array<Waiting, bvh_stack_size<Node::width>> stack;
   std::size_t waiting = 0;
   Float limit = distance.limit(best.t);
-  Waiting now{};
+  Waiting now{Float(0.0F), view.root, {}};
   for (;;) {
     if (now.child.entries == 0) {
       visitor.branch(now.number);
@@ -157,9 +158,9 @@ bool walk_bvh(const BvhView<Node>& view, const BvhRay<BoxFloat<Real>>& ray, cons
 }
 
 /// Chooses the walk for one ray. True when an occlusion query found its hit.
-template <bool Any, class Real, class Node, class Visitor>
-inline bool query_bvh(const BvhView<Node>& view, const Ray& ray, const RaySetup<Real>& setup,
-                      Best<Real>& best, Visitor& visitor) {
+template <bool Any, class Real, class View, class Visitor>
+inline bool query_bvh(const View& view, const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best,
+                      Visitor& visitor) {
   if constexpr (std::is_same_v<Real, float>) {
     return walk_bvh_far<Any>(view, ray, setup, best, visitor);
   } else {

@@ -131,15 +131,16 @@ template <class Node>
 }
 
 /// walk_bvh for doubles.
-template <bool Any, class Node, class Visitor>
-[[gnu::target("avx2")]] bool walk_bvh_avx2(const BvhView<Node>& view, const BvhRay<float>& ray,
+template <bool Any, class View, class Visitor>
+[[gnu::target("avx2")]] bool walk_bvh_avx2(const View& view, const BvhRay<float>& ray,
                                            const BvhDistance<double>& distance, const RaySetup<double>& setup,
                                            Best<double>& best, Visitor& visitor) {
+  using Node = typename View::Record;
   using Waiting = BvhWaiting<float>;
   std::array<Waiting, bvh_stack_size<Node::width>> stack;
   Waiting* top = stack.data();
   float limit = distance.limit(best.t);
-  Waiting now{};
+  Waiting now{0.0F, view.root, {}};
   BvhEntries entries;
   for (;;) {
     if (now.child.entries == 0) {

@@ -34,7 +34,8 @@ struct FarRay {
 
   /// `float_kernel`: primitives are intersected in floats. Then a hit may be off by watertight.h's error for
   /// floats, coordinates and origin are rounded, and the cells' own margins are negligible beside that.
-  FarRay(const RootFrame& frame, const Ray& ray, bool float_kernel = false)
+  /// `rounding`: how often the kernel's error hits may be off by, 1 or more.
+  FarRay(const RootFrame& frame, const Ray& ray, bool float_kernel = false, double rounding = 1.0)
       : origin{ray.origin.x, ray.origin.y, ray.origin.z},
         direction{ray.direction.x, ray.direction.y, ray.direction.z},
         t_min(ray.t_min) {
@@ -45,7 +46,7 @@ struct FarRay {
       reach = std::max(reach, std::abs(origin[a] - center[a]));
       speed = std::max(speed, std::abs(direction[a]));
     }
-    margin = 4.0 * frame.delta + 32.0 * 0x1p-53 * reach;
+    margin = 4.0 * frame.delta + rounding * 32.0 * 0x1p-53 * reach;
     if (float_kernel) {
       double largest = 0.0;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -53,7 +54,7 @@ struct FarRay {
         largest = std::max(
             {largest, std::abs(frame.box.lo[axis]), std::abs(frame.box.hi[axis]), std::abs(origin[a])});
       }
-      margin += 32.0 * RealFormat<float>::spacing * (reach + largest);
+      margin += rounding * 32.0 * RealFormat<float>::spacing * (reach + largest);
     }
     slack = 4.0 * margin / speed;
   }

@@ -38,7 +38,6 @@ bool given(const scenes::Bounds& box) {
 }  // namespace
 
 RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose) {
-  RootFrame frame;
   scenes::Bounds tight = triangles.bounds();
   if (given(enclose)) {
     check_enclosed(enclose);
@@ -47,6 +46,11 @@ RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose
       tight.include(enclose.hi);
     }
   }
+  return make_frame(tight, usual_reach);
+}
+
+RootFrame make_frame(const scenes::Bounds& tight, double reach) {
+  RootFrame frame;
   if (tight.empty()) {
     return frame;
   }
@@ -56,7 +60,7 @@ RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose
   for (int a = 0; a < 3; ++a) {
     largest = std::max({largest, std::abs(tight.lo[a]), std::abs(tight.hi[a])});
   }
-  frame.delta = 0x1p-40 * diagonal + 8.0 * 0x1p-52 * largest;
+  frame.delta = 0x1p-40 * (reach / usual_reach) * diagonal + 8.0 * 0x1p-52 * largest;
   frame.box.lo = tight.lo - root_margin * frame.delta;
   frame.box.hi = tight.hi + root_margin * frame.delta;
   for (int a = 0; a < 3; ++a) {
@@ -64,7 +68,7 @@ RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose
   }
   frame.center = 0.5 * frame.box.lo + 0.5 * frame.box.hi;
   // 64 on each axis makes the distance less than 128 diagonals.
-  frame.far = 64.0 * diagonal;
+  frame.far = reach * diagonal;
   frame.largest_inverse = 0x1p1014 / std::max(1.0, diagonal);
   return frame;
 }

@@ -27,6 +27,12 @@ struct RootFrame {
 /// coordinates is not a number of magnitude up to 2^300, or when lo > hi on some axis.
 [[nodiscard]] RootFrame make_frame(const TriangleSet& triangles, const scenes::Bounds& enclose = {});
 
+/// How many diagonals of the box an origin may be away on an axis before it is far, unless asked otherwise.
+inline constexpr double usual_reach = 64.0;
+/// The frame of primitives with this tight box. Larger `reach`es, powers of two up to 2^14, make delta larger
+/// in proportion, so that it covers the rounding of parameters of rays from farther away.
+[[nodiscard]] RootFrame make_frame(const scenes::Bounds& tight, double reach);
+
 /// Throws UserError, naming the structure and its option, when the value is out of range.
 void require_range(std::string_view structure, std::string_view option, std::uint64_t value, std::uint64_t lo,
                    std::uint64_t hi);

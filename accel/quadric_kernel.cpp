@@ -80,11 +80,11 @@ bool settle(Real& s, const Surface& surface) {
 /// Makes the hit at t the best one if it is better.
 template <class Real>
 bool offer(Real t, std::uint32_t id, Best<Real>& best) {
-  if (!(t <= best.t) || (t == best.t && id >= best.primitive)) {
+  if (!(t <= best.t) || (t == best.t && best.first + id >= best.primitive)) {
     return false;
   }
   best.t = t;
-  best.primitive = id;
+  best.primitive = best.first + id;
   best.edges = {Real(0.0), Real(0.0), Real(0.0)};
   best.det = Real(1.0);
   return true;

@@ -12,7 +12,10 @@ namespace {
 class Ranks {
  public:
   Ranks(const Topology& topology, bool leaf_records)
-      : topology_(topology), leaf_records_(leaf_records), ranks_(topology.nodes.size(), no_record) {
+      : topology_(topology),
+        leaf_records_(leaf_records),
+        ranks_(topology.nodes.size(), no_record),
+        appended_(topology.nodes.size()) {
     if (!ranks_.empty()) {
       place(0);
     }
@@ -22,7 +25,7 @@ class Ranks {
     const TopologyNode& node = topology_.nodes[branch];
     std::uint32_t count = 0;
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      count += has_record(child) ? 1 : 0;
+      count += has_record(child) && ranks_[child] == no_record ? 1 : 0;
     }
     return count;
   }
@@ -32,11 +35,12 @@ class Ranks {
       place(child);
     }
   }
-  /// Appends the children of a branch that are branches, in order.
-  void append_branches(std::uint32_t branch, std::vector<std::uint32_t>& list) const {
+  /// Appends the children of a branch that are branches, in order; each once.
+  void append_branches(std::uint32_t branch, std::vector<std::uint32_t>& list) {
     const TopologyNode& node = topology_.nodes[branch];
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      if (!topology_.nodes[child].leaf) {
+      if (!topology_.nodes[child].leaf && !appended_[child]) {
+        appended_[child] = true;
         list.push_back(child);
       }
     }
@@ -54,8 +58,9 @@ class Ranks {
   [[nodiscard]] bool has_record(std::uint32_t node) const {
     return leaf_records_ || !topology_.nodes[node].leaf;
   }
+  // The root of a mesh is below all of its instances, and has one record.
   void place(std::uint32_t node) {
-    if (has_record(node)) {
+    if (has_record(node) && ranks_[node] == no_record) {
       ranks_[node] = next_++;
     }
   }
@@ -63,6 +68,7 @@ class Ranks {
   const Topology& topology_;
   bool leaf_records_;
   std::vector<std::uint32_t> ranks_;
+  std::vector<bool> appended_;
   std::uint32_t next_ = 0;
 };
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <type_traits>
 
+#include "sim/key_error.h"
+
 namespace marti::accel {
 
 namespace {
@@ -16,6 +18,14 @@ std::span<const std::string_view> structure_kinds() { return kinds; }
 
 std::unique_ptr<Structure> make_structure(std::string_view kind, std::shared_ptr<const TriangleSet> triangles,
                                           const StructureOptions& options) {
+  if (!triangles->instances().empty()) {
+    if (kind != Bvh::kind_name) {
+      throw sim::KeyError("structure.instances",
+                          "only a bvh has a level for instances, and structure.kind is \"" +
+                              std::string(kind) + "\"; set \"copied\"");
+    }
+    return std::make_unique<StructureOf<TwoLevelBvh>>(TwoLevelBvh::build(std::move(triangles), options.bvh));
+  }
   if (kind == Octree::kind_name) {
     return std::make_unique<StructureOf<Octree>>(Octree::build(std::move(triangles), options.octree));
   }
@@ -53,7 +63,9 @@ std::uint64_t host_bytes(const Structure& structure) {
   const std::uint64_t planes =
       structure.kind() == Bsp::kind_name ? sizeof(double) * topology.nodes.size() : 0;
   const auto* bvh = dynamic_cast<const StructureOf<Bvh>*>(&structure);
-  return bytes_of(topology) + records + planes + (bvh == nullptr ? 0 : bvh->concrete().walk_bytes());
+  const auto* levels = dynamic_cast<const StructureOf<TwoLevelBvh>*>(&structure);
+  return bytes_of(topology) + records + planes + (bvh == nullptr ? 0 : bvh->concrete().walk_bytes()) +
+         (levels == nullptr ? 0 : levels->concrete().walk_bytes());
 }
 
 Traversal traversal_of(const Structure& structure) {
@@ -61,7 +73,8 @@ Traversal traversal_of(const Structure& structure) {
     using Concrete = std::remove_cvref_t<decltype(concrete)>;
     if constexpr (std::is_same_v<Concrete, Octree> || std::is_same_v<Concrete, LazyOctree>) {
       return Traversal::octree;
-    } else if constexpr (std::is_same_v<Concrete, Bsp> || std::is_same_v<Concrete, Bvh>) {
+    } else if constexpr (std::is_same_v<Concrete, Bsp> || std::is_same_v<Concrete, Bvh> ||
+                         std::is_same_v<Concrete, TwoLevelBvh>) {
       return concrete.traversal();
     } else if constexpr (std::is_same_v<Concrete, Grid>) {
       return Traversal::grid;

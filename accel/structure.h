@@ -17,6 +17,7 @@
 #include "accel/topology.h"
 #include "accel/traversal.h"
 #include "accel/triangles.h"
+#include "accel/two_level.h"
 #include "sim/error.h"
 
 namespace marti::accel {
@@ -79,7 +80,8 @@ struct StructureOptions {
 /// force).
 [[nodiscard]] std::span<const std::string_view> structure_kinds();
 
-/// Builds a structure. Throws UserError for an unknown kind or an option out of range.
+/// Builds a structure; a bvh of a set with instances has two levels (two_level.h). Throws UserError for an
+/// unknown kind, an option out of range, and instances in another structure.
 [[nodiscard]] std::unique_ptr<Structure> make_structure(std::string_view kind,
                                                         std::shared_ptr<const TriangleSet> triangles,
                                                         const StructureOptions& options = {});
@@ -109,6 +111,9 @@ decltype(auto) visit_structure(const Structure& structure, F&& f) {
   }
   if (const auto* bvh = dynamic_cast<const StructureOf<Bvh>*>(&structure)) {
     return std::forward<F>(f)(bvh->concrete());
+  }
+  if (const auto* instances = dynamic_cast<const StructureOf<TwoLevelBvh>*>(&structure)) {
+    return std::forward<F>(f)(instances->concrete());
   }
   if (const auto* brute = dynamic_cast<const StructureOf<BruteForce>*>(&structure)) {
     return std::forward<F>(f)(brute->concrete());

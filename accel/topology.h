@@ -26,7 +26,8 @@ struct SplitWork {
 };
 
 /// Nodes in breadth-first order (node 0 is the root); entries are primitive ids, leaf by leaf in node
-/// order, ascending within a leaf.
+/// order, ascending within a leaf. Where instances are kept (two_level.h), an instance is a branch with one
+/// child, the root of its mesh, which is below all instances of the mesh.
 struct Topology {
   std::vector<TopologyNode> nodes;
   std::vector<std::uint32_t> entries;
@@ -35,6 +36,15 @@ struct Topology {
 
   bool operator==(const Topology&) const = default;
 };
+
+/// Whether instances are kept: then some nodes are below several branches.
+[[nodiscard]] inline bool has_instances(const Topology& topology) {
+  std::size_t below = 1;
+  for (const TopologyNode& node : topology.nodes) {
+    below += node.leaf ? 0 : node.count;
+  }
+  return below > topology.nodes.size();
+}
 
 /// Bytes of host memory that the topology takes.
 [[nodiscard]] inline std::uint64_t bytes_of(const Topology& topology) {

@@ -46,6 +46,12 @@ TriangleSet::TriangleSet(const scenes::Scene& scene) {
   }
   check_triangles();
   add_quadrics(scene.quadrics);
+  if (!scene.instances.empty()) {
+    sim::ensure(scene.quadrics.empty(), "a scene with instances and quadrics");
+    meshes_ = scene.meshes;
+    instances_ = scene.instances;
+    bounds_ = scenes::bounds_of(scene);
+  }
   if (CutOuts holes(scene); !holes.empty()) {
     cut_outs_ = std::make_shared<const CutOuts>(std::move(holes));
   }
@@ -91,6 +97,22 @@ void TriangleSet::add_quadrics(const std::vector<scenes::Quadric>& quadrics) {
     bounds_.include({shape.lo[0], shape.lo[1], shape.lo[2]});
     bounds_.include({shape.hi[0], shape.hi[1], shape.hi[2]});
   }
+}
+
+scenes::Bounds TriangleSet::bounds(PrimitiveRange range) const {
+  scenes::Bounds box;
+  for (std::uint32_t id = range.first; id < range.first + range.count; ++id) {
+    if (id < triangles()) {
+      for (unsigned k = 0; k < 3; ++k) {
+        box.include(corner(id, k));
+      }
+    } else {
+      const QuadricShape& shape = quadric(id);
+      box.include({shape.lo[0], shape.lo[1], shape.lo[2]});
+      box.include({shape.hi[0], shape.hi[1], shape.hi[2]});
+    }
+  }
+  return box;
 }
 
 }  // namespace marti::accel

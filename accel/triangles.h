@@ -23,13 +23,15 @@ using TriangleCorners = std::array<double, 9>;
 /// The largest magnitude of a coordinate: products of three must stay far from overflow.
 inline constexpr double largest_coordinate = 0x1p300;
 
+using scenes::PrimitiveRange;
+
 /// Primitive ids are indices: of T triangles, triangle i is Scene::triangles[i] and has the id i; the curved
 /// primitive i is Scene::quadrics[i] and has the id T + i.
 class TriangleSet {
  public:
   TriangleSet() = default;
   /// The scene's triangles must be valid (see scene.h): indices in range. Throws UserError for invalid
-  /// positions and quadrics.
+  /// positions and quadrics. Those of a scene with instances are in the coordinates of their meshes.
   explicit TriangleSet(const scenes::Scene& scene);
   /// Coordinates must be finite with magnitudes up to 2^300, and quadrics valid; throws UserError otherwise.
   explicit TriangleSet(std::vector<TriangleCorners> triangles,
@@ -37,8 +39,9 @@ class TriangleSet {
 
   /// Bytes of host memory that the set of a scene's primitives takes.
   [[nodiscard]] static std::uint64_t host_bytes(const scenes::Scene& scene) {
-    return scene.triangles.size() * sizeof(TriangleCorners) + scene.quadrics.size() * sizeof(QuadricShape) +
-           CutOuts::host_bytes(scene);
+    return scene.triangles.size() * sizeof(TriangleCorners) +
+           scene.instances.size() * sizeof(scenes::InstancePlace) +
+           scene.quadrics.size() * sizeof(QuadricShape) + CutOuts::host_bytes(scene);
   }
 
   /// The number of all primitives; ids are below it.
@@ -61,10 +64,15 @@ class TriangleSet {
     const double* p = &triangles_[id][std::size_t{3} * which];
     return {p[0], p[1], p[2]};
   }
+  /// The scene's meshes and where they stand; empty unless the scene has instances.
+  [[nodiscard]] const std::vector<PrimitiveRange>& meshes() const { return meshes_; }
+  [[nodiscard]] const std::vector<scenes::InstancePlace>& instances() const { return instances_; }
   /// The holes of the triangles; null where none has any.
   [[nodiscard]] const CutOuts* cut_outs() const { return cut_outs_.get(); }
-  /// The tight box of all primitives; empty when there are none.
+  /// The tight box of all primitives, in all instances; empty when there are none.
   [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
+  /// The tight box of some of them.
+  [[nodiscard]] scenes::Bounds bounds(PrimitiveRange range) const;
 
  private:
   void check_triangles();
@@ -72,6 +80,8 @@ class TriangleSet {
 
   std::vector<TriangleCorners> triangles_;
   std::vector<QuadricShape> quadrics_;
+  std::vector<PrimitiveRange> meshes_;
+  std::vector<scenes::InstancePlace> instances_;
   std::shared_ptr<const CutOuts> cut_outs_;
   scenes::Bounds bounds_;
 };

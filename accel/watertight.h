@@ -92,6 +92,8 @@ struct Best {
   EdgeFunctions<Real> edges{Real(0.0), Real(0.0), Real(0.0)};
   Real det{1.0};
   HitFilter filter;
+  /// Added to the ids of primitives that are tested: those of an instance are its own. Modulo 2^32.
+  std::uint32_t first = 0;
 
   /// `which`: what decides whether a hit of a triangle with holes counts; without it each does.
   explicit Best(const RaySetup<Real>& setup, const HitFilter& which = {})
@@ -184,7 +186,7 @@ inline bool accept(const RaySetup<Real>& ray, const EdgeFunctions<Real>& edges, 
   Real t = (edges.u * a + edges.v * b + edges.w * c) / det;
   t = max(t, min(min(a, b), c));
   t = min(t, max(max(a, b), c));
-  if (!(t >= ray.t_min) || !(t <= best.t) || (t == best.t && id >= best.primitive)) {
+  if (!(t >= ray.t_min) || !(t <= best.t) || (t == best.t && best.first + id >= best.primitive)) {
     return false;
   }
   if constexpr (Holes) {
@@ -193,7 +195,7 @@ inline bool accept(const RaySetup<Real>& ray, const EdgeFunctions<Real>& edges, 
     }
   }
   best.t = t;
-  best.primitive = id;
+  best.primitive = best.first + id;
   best.edges = edges;
   best.det = det;
   return true;

@@ -18,6 +18,12 @@ namespace marti::scenes {
 enum class DefaultLight : std::uint8_t { automatic, always, never };
 inline constexpr std::array<std::string_view, 3> default_light_names = {"auto", "always", "never"};
 
+/// What becomes of meshes that several nodes share. automatic: they are kept where copies would be more than
+/// many_copies triangles.
+enum class Instances : std::uint8_t { automatic, copied, kept };
+inline constexpr std::array<std::string_view, 3> instances_names = {"auto", "copied", "kept"};
+inline constexpr std::uint64_t many_copies = 4'000'000;
+
 /// A view of the user's own: what is given replaces what the scene has.
 struct ViewOptions {
   std::optional<glm::dvec3> eye;
@@ -47,6 +53,7 @@ struct FileOptions {
   double time = 0.0;  ///< of the pose that is asked for: seconds from the animation's beginning
   /// automatic: only a scene that has no light and does not say that none is missing (Scene::lights_are_all).
   DefaultLight default_light = DefaultLight::automatic;
+  Instances instances = Instances::copied;
   bool emitters_light = false;  ///< triangles that emit light and a sky count as lights: paths find them
   /// Refuses what else is replaced with a note because many files are so: docs/scenes.md lists it.
   bool strict = false;

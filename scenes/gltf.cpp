@@ -13,6 +13,7 @@
 #include "scenes/gltf_animation.h"
 #include "scenes/gltf_extensions.h"
 #include "scenes/gltf_instances.h"
+#include "scenes/gltf_kept.h"
 #include "scenes/gltf_material.h"
 #include "scenes/gltf_mesh.h"
 #include "scenes/gltf_model.h"
@@ -154,17 +155,19 @@ class GltfPoses : public PoseSource {
     skins_.emplace(model_, nodes_);
     Pose pose;
     pose.nodes = gltf::place_nodes(model_, nodes_, {});
-    const gltf::Expanded expanded = gltf::expanded_instances(model_, nodes_);
+    gltf::KeptMeshes kept(model_, nodes_, pose, animation_.has_value());
+    const gltf::Expanded expanded = gltf::expanded_instances(model_, kept.distinct(nodes_));
     model_.take_memory(expanded.bytes(), "its instances take");
     still_.positions.reserve(expanded.vertices);
     still_.triangles.reserve(expanded.triangles);
     gltf::Materials materials(model_, decode, still_, left_out);
     gltf::MeshReader meshes(model_, materials, *skins_, still_, left_out);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (model_.data().nodes[static_cast<std::size_t>(nodes_[i].node)].mesh >= 0) {
+      if (model_.data().nodes[static_cast<std::size_t>(nodes_[i].node)].mesh >= 0 && !kept.keeps(i)) {
         meshes.add(i, pose);
       }
     }
+    kept.add(meshes, pose, still_);
     if (still_.triangles.empty()) {
       if (meshes.bad_triangles() == 0) {
         model_.fail_empty();
@@ -191,6 +194,7 @@ class GltfPoses : public PoseSource {
       gltf::read_unused(model_, materials);
     }
     note_extensions(model_, still_);
+    kept.note(still_);
     note_left_out(left_out, still_);
     note_bad_positions(meshes.bad_triangles(), "triangles", still_);
     if (animation_) {

@@ -8,6 +8,7 @@
 #include "scenes/append_geometry.h"
 #include "scenes/camera_file.h"
 #include "scenes/default_view.h"
+#include "sim/key_error.h"
 
 namespace marti::scenes {
 
@@ -27,6 +28,12 @@ MergedScene::MergedScene(const SourceFile& whole) : whole_(whole), part_{{}, who
   part_.file.default_light = DefaultLight::never;
   part_.file.animation = "none";
   part_.file.time = 0.0;
+  if (part_.file.instances == Instances::kept) {
+    throw sim::KeyError(
+        "structure.instances",
+        "several files are copied into one scene; set \"copied\", or make one glTF file of them");
+  }
+  part_.file.instances = Instances::copied;
 }
 
 void MergedScene::open(std::string_view spec, const std::filesystem::path& base_directory,

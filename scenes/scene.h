@@ -15,6 +15,7 @@
 
 #include "scenes/camera.h"
 #include "scenes/given_rays.h"
+#include "scenes/instance.h"
 #include "scenes/quadric.h"
 
 namespace marti::scenes {
@@ -106,6 +107,13 @@ struct Scene {
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec2> uvs;
   std::vector<Triangle> triangles;
+  /// Without instances all of the scene is as described here. With them, each triangle is of exactly one of
+  /// `meshes`, whose vertices are in coordinates of its own, and the scene is what the instances make of
+  /// them; there are no quadrics then, and emissive triangles only in the mesh of the first instance, which
+  /// begins with triangle 0 and is where it is. Primitive ids are those of a scene in which each instance is
+  /// copied, one after the other.
+  std::vector<PrimitiveRange> meshes;
+  std::vector<InstancePlace> instances;
   std::vector<Quadric> quadrics;  ///< primitive ids from triangles.size() on; each valid as in quadric.h
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -125,7 +133,23 @@ struct Scene {
 /// distances are below the smallest normal double. No ray hits such a triangle.
 [[nodiscard]] bool has_no_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
-/// The material of a primitive id.
+/// What a primitive id stands for.
+struct HitTriangle {
+  std::uint32_t triangle = 0;            ///< index into Scene::triangles; beyond them: the id of a quadric
+  const InstancePlace* place = nullptr;  ///< null: the triangle is where its vertices are
+
+  HitTriangle(std::uint32_t id, const InstancePlace* of = nullptr) : triangle(id), place(of) {}
+};
+[[nodiscard]] HitTriangle hit_triangle(const Scene& scene, std::uint32_t primitive);
+
+/// Numbers the primitives of all instances (InstancePlace::first) and bounds their rounding. Throws UserError
+/// when there are 2^32 - 1 or more, or when one is farther than 2^300 from the origin.
+void number_instances(Scene& scene);
+
+/// The scene in which each instance is copied.
+[[nodiscard]] Scene copied_instances(const Scene& scene);
+
+/// The material of a triangle, or of a quadric by its primitive id.
 [[nodiscard]] inline std::uint32_t material_of(const Scene& scene, std::uint32_t primitive) {
   return primitive < scene.triangles.size() ? scene.triangles[primitive].material
                                             : scene.quadrics[primitive - scene.triangles.size()].material;
@@ -143,7 +167,8 @@ struct Bounds {
 /// The tight box of a valid quadric, up to rounding.
 [[nodiscard]] Bounds bounds_of(const Quadric& quadric);
 
-/// The bounds of the triangles' vertices (unreferenced vertices do not count) and of the quadrics.
+/// The bounds of the scene: of its triangles' vertices, in all instances (unreferenced vertices do not
+/// count), and of the quadrics.
 [[nodiscard]] Bounds bounds_of(const Scene& scene);
 
 }  // namespace marti::scenes

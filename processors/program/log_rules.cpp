@@ -73,11 +73,14 @@ void check_tree(const WorkLog& log, Fault& fault) {
     fault.add_if(node.count == 0, "a branch without children");
     fault.add_if(node.first <= n, "a branch above its parent");
     for (std::size_t child = node.first; child < end && fault.none(); ++child) {
-      fault.add_if(has_parent[child], "a node with two parents");
-      fault.add_if(tree.nodes[child].level != node.level + 1,
-                   "a node that is not on the level below its parent's");
+      // The root of a mesh is below all of its instances, one level below the deepest.
+      const bool instance = node.count == 1 && accel::walks_bvh(log.traversal);
+      fault.add_if(has_parent[child] && !instance, "a node with two parents");
+      fault.add_if(
+          instance ? tree.nodes[child].level <= node.level : tree.nodes[child].level != node.level + 1,
+          "a node that is not on the level below its parent's");
+      children += has_parent[child] ? 0 : 1;
       has_parent[child] = true;
-      ++children;
     }
   }
   fault.add_if(nodes != 0 && children + 1 != nodes, "a node without a parent");
@@ -173,8 +176,7 @@ class StepRules {
 /// Checks the order of a pixel's steps. An object is for one thread, which checks pixels of one log.
 class OrderRules {
  public:
-  OrderRules(const WorkLog& log, const std::vector<std::uint32_t>& parent)
-      : log_(log), parent_(parent), visited_(log.topology.nodes.size()) {}
+  explicit OrderRules(const WorkLog& log) : log_(log), reached_(log.topology.nodes.size()) {}
 
   void check(std::uint32_t x, std::uint32_t y, Fault& fault) {
     entered_ = log_.has_entered() ? log_.entered(x, y) : std::span<const std::uint32_t>();
@@ -210,7 +212,7 @@ class OrderRules {
  private:
   void begin_ray() {
     if (++ray_ == 0) {  // the number has been used before
-      std::ranges::fill(visited_, 0U);
+      std::ranges::fill(reached_, 0U);
       ray_ = 1;
     }
     waiting_.assign(1, 0);
@@ -218,9 +220,9 @@ class OrderRules {
 
   void visit(Step step, std::uint32_t number, Fault& fault) {
     const accel::TopologyNode& node = log_.topology.nodes[number];
-    fault.add_if(number != 0 && visited_[parent_[number]] != ray_, "a visit before that to the branch above");
-    if (step == Step::branch) {
-      visited_[number] = ray_;
+    fault.add_if(number != 0 && reached_[number] != ray_, "a visit before that to the branch above");
+    if (step == Step::branch && fault.none()) {
+      std::fill_n(reached_.begin() + node.first, node.count, ray_);
     }
     if (log_.has_entered() && fault.none()) {
       take(number, fault);
@@ -305,8 +307,7 @@ class OrderRules {
   }
 
   const WorkLog& log_;
-  const std::vector<std::uint32_t>& parent_;
-  std::vector<std::uint32_t> visited_;  // of each branch: the ray that was there last
+  std::vector<std::uint32_t> reached_;  // of each node: the ray that was at a branch above it last
   std::uint32_t ray_ = 0;
   std::vector<std::uint32_t> waiting_;  // nodes that the ray has entered; the next one last
   std::span<const std::uint32_t> entered_;
@@ -426,7 +427,7 @@ std::string fault_of_order(const WorkLog& log) {
     return "the work of splitting a branch that cannot be";
   }
   return fault_of_rows(
-      log, [&] { return OrderRules(log, parent); },
+      log, [&] { return OrderRules(log); },
       [](OrderRules& rules, std::uint32_t x, std::uint32_t y, Fault& of) { rules.check(x, y, of); });
 }
 

@@ -154,6 +154,11 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
         "which hits of triangles with holes are asked about would rest on who helps whom, and "
         "scene.source has such triangles; set rt.share = \"none\"");
   }
+  if (options.meets && !triangles.instances().empty()) {
+    throw sim::KeyError("rt.share",
+                        "what a ray meets in kept instances is not recorded; set structure.instances = "
+                        "\"copied\" or rt.share = \"none\"");
+  }
   Frame frame;
   frame.image.width = options.width;
   frame.image.height = options.height;

@@ -33,7 +33,9 @@ void render_in_order(const scenes::Scene& scene, const accel::Structure& structu
                      Frame& frame) {
   const auto* const bvh = dynamic_cast<const accel::StructureOf<accel::Bvh>*>(&structure);
   if (bvh == nullptr) {
-    throw sim::KeyError("rt.order", "only a bvh can be walked in another order than \"depth_first\"");
+    throw sim::KeyError("rt.order",
+                        "only a bvh whose instances are copied can be walked in another order than "
+                        "\"depth_first\"");
   }
   if (options.mailboxes) {
     throw sim::KeyError("structure.mailboxes", "do not combine with an rt.order other than \"depth_first\"");

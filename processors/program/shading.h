@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "accel/real.h"
 #include "processors/program/power.h"
@@ -161,16 +162,26 @@ void bound_rounding(Surface<Real>& surface, const Vec3<Real> (&p)[3], const Real
   surface.inward = first * (raised[1] / sum - weights[1]) + second * (raised[2] / sum - weights[2]);
 }
 
-/// The point with barycentric weights b and the normals of the triangle there, seen along `direction`.
+/// The point with barycentric weights b and the normals of the triangle there, seen along `direction`. Of an
+/// instance the triangle is turned into its place first, as the copy would be.
 /// `reach`: the largest side of the scene's box, whose rounding keeps rays that leave off the edges
 /// (bound_rounding).
 template <typename Real>
-Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, const Real (&b)[3],
+Surface<Real> surface_at(const scenes::Scene& scene, const scenes::HitTriangle& hit, const Real (&weights)[3],
                          const Vec3<Real>& direction, double reach) {
-  const scenes::Triangle& t = scene.triangles[triangle];
-  const Vec3<Real> p0(scene.positions[t.vertex[0]]);
-  const Vec3<Real> p1(scene.positions[t.vertex[1]]);
-  const Vec3<Real> p2(scene.positions[t.vertex[2]]);
+  scenes::Triangle t = scene.triangles[hit.triangle];
+  Real b[3] = {weights[0], weights[1], weights[2]};
+  if (hit.place != nullptr && hit.place->mirrors()) {
+    std::swap(t.vertex[1], t.vertex[2]);
+    std::swap(b[1], b[2]);
+  }
+  const auto position = [&](std::size_t k) {
+    const glm::dvec3& own = scene.positions[t.vertex[k]];
+    return Vec3<Real>(hit.place == nullptr ? own : hit.place->of(own));
+  };
+  const Vec3<Real> p0 = position(0);
+  const Vec3<Real> p1 = position(1);
+  const Vec3<Real> p2 = position(2);
 
   Surface<Real> surface;
   const Vec3<Real> t0 = p0 * b[0];
@@ -180,6 +191,9 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   // Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., section 6.8.5.
   surface.error = (absolute(t0) + absolute(t1) + absolute(t2)) * Real(gamma_bound<Real>(7));
   surface.margin = kernel_margin<Real>({p0, p1, p2});
+  if (hit.place != nullptr) {
+    surface.margin = surface.margin + Real(hit.place->rounding * (rounding<Real> / rounding<double>));
+  }
 
   // In floats a triangle may have lost its area, and yet be hit: then it faces the viewer.
   surface.geometric = unit_normal(p1 - p0, p2 - p0, -direction);
@@ -191,7 +205,8 @@ Surface<Real> surface_at(const scenes::Scene& scene, std::uint32_t triangle, con
   bound_rounding(surface, {p0, p1, p2}, b, reach);
   if (!scene.normals.empty()) {
     const auto corner = [&](int k) {
-      const glm::dvec3& n = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
+      const glm::dvec3& given = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
+      const glm::dvec3 n = hit.place == nullptr ? given : hit.place->normal_of(given);
       const bool none = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
       const Vec3<Real> own(n);
       // Vertex normals may point to either side: each is brought to the viewer's before they are mixed.

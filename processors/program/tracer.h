@@ -256,13 +256,14 @@ class Tracer {
 
   void shade(const Pending& pending, const accel::Hit& hit) {
     recorder_.phase(Phase::shade, pending.kind);
-    const std::uint32_t material_id = scenes::material_of(scene_, hit.primitive);
+    const scenes::HitTriangle at = scenes::hit_triangle(scene_, hit.primitive);
+    const std::uint32_t material_id = scenes::material_of(scene_, at.triangle);
     const scenes::Material& material = scene_.materials[material_id];
     recorder_.shade(material_id);
     const Real b[3] = {Real(hit.u), Real(hit.v), Real(hit.w)};
-    const bool triangle = hit.primitive < scene_.triangles.size();
+    const bool triangle = at.triangle < scene_.triangles.size();
     Surface<Real> surface =
-        triangle ? surface_at(scene_, hit.primitive, b, pending.direction, reach_)
+        triangle ? surface_at(scene_, at, b, pending.direction, reach_)
                  : quadric_surface(structure_.triangles().quadric(hit.primitive),
                                    pending.origin + pending.direction * Real(hit.t), pending.direction);
     if (sends_any_hit_rays(options_.integrator)) {
@@ -273,12 +274,12 @@ class Tracer {
     if (triangle && material.texture != scenes::no_texture && !scene_.uvs.empty()) {
       recorder_.phase(Phase::texel, pending.kind);
       const scenes::TextureSample sample =
-          scenes::sample_nearest(scene_.textures[material.texture], uv_at(scene_, hit.primitive, b));
+          scenes::sample_nearest(scene_.textures[material.texture], uv_at(scene_, at.triangle, b));
       recorder_.texel(material.texture, sample.texel);
       surface.color = surface.color * Vec(sample.color);
       recorder_.phase(Phase::shade, pending.kind);
     }
-    light_up(pending, material, surface, emitters_.has(hit.primitive));
+    light_up(pending, material, surface, emitters_.has(at.triangle));
   }
 
   /// With sends_any_hit_rays(): all that follows from a camera ray's hit.

@@ -71,6 +71,7 @@ void read_structure(sim::Config& config, FrameConfig& frame) {
     options.bsp.walk = config.choice_as<accel::BspWalk>("structure.bsp_walk");
   } else if (frame.structure == "bvh") {
     read_bvh(config, options.bvh);
+    frame.open.file.instances = config.choice_as<scenes::Instances>("structure.instances");
   } else if (frame.structure == "grid") {
     options.grid_match = config.choice_as<accel::GridMatch>("structure.grid_resolution");
     if (options.grid_match == accel::GridMatch::density) {
@@ -260,6 +261,10 @@ void declare_frame_keys(sim::Schema& schema) {
                  "bvh: most that a leaf lists; 6: at most 15, 8_quantised: at most 3");
   schema.integer("structure.bvh_bins", 32, {2, accel::bvh_most_bins}, "",
                  "bvh: intervals of each axis between which the builder looks for a node's best split");
+  schema.choice("structure.instances", "auto", names(scenes::instances_names),
+                "bvh: meshes that nodes of a glTF file share are copied for each, or kept once, in a tree of "
+                "their own below a tree of instances; auto: kept where copies would be more than 4 million "
+                "triangles");
   schema.boolean("structure.mailboxes", false,
                  "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");

@@ -94,6 +94,16 @@ std::uint64_t scene_hash(const scenes::Scene& scene) {
     }
     hash.add(std::uint64_t{triangle.material});
   }
+  for (const scenes::PrimitiveRange& mesh : scene.meshes) {
+    hash.add(std::uint64_t{mesh.first});
+    hash.add(std::uint64_t{mesh.count});
+  }
+  for (const scenes::InstancePlace& place : scene.instances) {
+    hash.add(std::uint64_t{place.mesh});
+    for (const glm::dvec3& vector : {place.linear[0], place.linear[1], place.linear[2], place.shift}) {
+      hash.add_vector(vector);
+    }
+  }
   hash.add(std::uint64_t{scene.quadrics.size()});
   for (const scenes::Quadric& quadric : scene.quadrics) {
     add(hash, quadric);

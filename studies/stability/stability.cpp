@@ -50,6 +50,9 @@ std::vector<StabilityCase> chosen_of(const sim::Config& config, std::span<const 
 
 void prepare(const sim::Config& config, double side, Subject& subject) {
   subject.scene = run::open_frame(subject.frame);
+  if (!subject.scene.instances.empty()) {
+    config.fail("structure.instances", "the cases aim at triangles in their places; set \"copied\"");
+  }
   const run::PreparedFrame prepared(subject.frame, subject.scene);
   subject.frame = prepared.config();  // what is left of the memory
   subject.triangles = prepared.triangles();

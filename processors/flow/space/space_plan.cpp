@@ -88,6 +88,12 @@ SpacePlan plan_space(const program::WorkLog& log, const machine::MachineConfig& 
   if (config.space.queue == 0) {
     throw sim::KeyError("space.queue", "a node needs room for at least one ray");
   }
+  if (accel::has_instances(log.topology)) {
+    throw sim::KeyError(
+        "structure.instances",
+        "a kept mesh lies in all regions that its instances are in, and so belongs to no node; "
+        "set \"copied\" to divide space");
+  }
   SpacePlan plan;
   plan.regions = cut_regions(log.topology, config.space.level);
   plan.node_of_region = deal(log, config, plan);

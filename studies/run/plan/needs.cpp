@@ -102,7 +102,7 @@ class Finder {
     for (std::uint32_t id = 0; id < in_view_.size(); ++id) {
       const std::uint32_t material = scenes::material_of(scene_, id);
       listed[material] = true;
-      if (everything_ || view.may_meet(scene_, id)) {
+      if (everything_ || !scene_.instances.empty() || view.may_meet(scene_, id)) {
         in_view_[id] = true;
         seen[material] = true;
       }

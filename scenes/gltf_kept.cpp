@@ -1,0 +1,127 @@
+#include "scenes/gltf_kept.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "scenes/gltf_instances.h"
+#include "sim/key_error.h"
+
+namespace marti::scenes::gltf {
+
+namespace {
+
+InstancePlace place_of(const glm::dmat4& world) {
+  InstancePlace place;
+  place.linear = glm::dmat3(world);
+  place.shift = glm::dvec3(world[3]);
+  return place;
+}
+
+bool emits(const Model& model, const tinygltf::Primitive& primitive) {
+  const std::vector<tinygltf::Material>& materials = model.data().materials;
+  if (primitive.material < 0 || static_cast<std::size_t>(primitive.material) >= materials.size()) {
+    return false;  // a fault that is found when the primitive is read
+  }
+  const tinygltf::Material& material = materials[static_cast<std::size_t>(primitive.material)];
+  return material.emissiveTexture.index >= 0 ||
+         std::ranges::any_of(material.emissiveFactor, [](double factor) { return factor != 0.0; });
+}
+
+bool may_be_kept(const Model& model, int mesh) {
+  const std::vector<tinygltf::Mesh>& meshes = model.data().meshes;
+  return static_cast<std::size_t>(mesh) < meshes.size() &&
+         std::ranges::none_of(meshes[static_cast<std::size_t>(mesh)].primitives,
+                              [&](const tinygltf::Primitive& primitive) {
+                                return !primitive.targets.empty() || emits(model, primitive);
+                              });
+}
+
+}  // namespace
+
+KeptMeshes::KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, const Pose& pose,
+                       bool animated)
+    : kept_(nodes.size()) {
+  const Instances wanted = model.options().instances;
+  if (wanted == Instances::copied || (animated && wanted == Instances::automatic)) {
+    return;
+  }
+  if (animated) {
+    throw sim::KeyError("structure.instances",
+                        "an animated scene is copied for each pose; set scene.animation = \"none\" to keep "
+                        "the instances of its static pose");
+  }
+  if (wanted == Instances::automatic && expanded_instances(model, nodes).triangles <= many_copies) {
+    return;
+  }
+  std::map<int, std::vector<std::size_t>> users;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(nodes[i].node)];
+    if (node.mesh >= 0 && node.skin < 0 && why_not_kept(place_of(pose.nodes[i].world)).empty()) {
+      users[node.mesh].push_back(i);
+    }
+  }
+  for (auto& [mesh, places] : users) {
+    if (places.size() > 1 && may_be_kept(model, mesh)) {
+      for (const std::size_t place : places) {
+        kept_[place] = true;
+      }
+      places_.emplace(mesh, std::move(places));
+    }
+  }
+}
+
+std::vector<SceneNode> KeptMeshes::distinct(const std::vector<SceneNode>& nodes) const {
+  std::vector<bool> wanted(nodes.size(), true);
+  for (const auto& [mesh, places] : places_) {
+    for (const std::size_t place : places) {
+      wanted[place] = place == places.front();
+    }
+  }
+  std::vector<SceneNode> chosen;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (wanted[i]) {
+      chosen.push_back(nodes[i]);
+    }
+  }
+  return chosen;
+}
+
+void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) const {
+  if (places_.empty()) {
+    return;
+  }
+  if (!scene.triangles.empty()) {
+    scene.meshes.push_back({0, static_cast<std::uint32_t>(scene.triangles.size())});
+    scene.instances.emplace_back();
+  }
+  for (const auto& [mesh, places] : places_) {
+    const auto first = static_cast<std::uint32_t>(scene.triangles.size());
+    const glm::dmat4 world = std::exchange(pose.nodes[places.front()].world, glm::dmat4(1.0));
+    reader.add(places.front(), pose);
+    pose.nodes[places.front()].world = world;
+    const auto count = static_cast<std::uint32_t>(scene.triangles.size()) - first;
+    if (count == 0) {
+      continue;
+    }
+    for (const std::size_t place : places) {
+      InstancePlace& instance = scene.instances.emplace_back(place_of(pose.nodes[place].world));
+      instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    }
+    scene.meshes.push_back({first, count});
+  }
+  number_instances(scene);
+}
+
+void KeptMeshes::note(Scene& scene) const {
+  if (scene.instances.empty()) {
+    return;
+  }
+  const InstancePlace& last = scene.instances.back();
+  scene.notes.push_back("Instances are kept: " + std::to_string(scene.instances.size()) + " of " +
+                        std::to_string(scene.meshes.size()) + " meshes stand for " +
+                        std::to_string(last.first + scene.meshes[last.mesh].count) + " triangles.");
+}
+
+}  // namespace marti::scenes::gltf
