@@ -75,6 +75,10 @@ explore.answer = (() => {
     /** Says why there is no such machine; the page keeps showing the one before. */
     refuse(error) {
       at("state").textContent = `This machine cannot be: ${error}`;
+      if (!at("sentences").children.length) {
+        // The page began with it.
+        document.querySelector(".about").textContent = "there is no machine with the settings of this address";
+      }
       show_helps(null);
       document.documentElement.classList.add("old");
     },
