@@ -1,6 +1,7 @@
 #include "studies/explore/http_server.h"
 
 #include <httplib.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 
 #include <algorithm>
@@ -163,6 +164,11 @@ class Server : public httplib::Server {
  public:
   // cpp-httplib lets five connections wait to be taken; one more is tried again by its client after a second.
   void let_many_wait() { ::listen(svr_sock_, SOMAXCONN); }
+  // A connection on which nothing has come yet keeps no thread: the system hands over those with a request.
+  void leave_silent_ones() {
+    const int seconds = 60;
+    setsockopt(svr_sock_, IPPROTO_TCP, TCP_DEFER_ACCEPT, &seconds, sizeof(seconds));
+  }
   void end() {
     ending_ = true;
     stop();
@@ -203,6 +209,7 @@ class Httplib : public HttpServer {
                            " cannot be had; another program may use it (--port 0 takes a free one)");
     }
     server_.let_many_wait();
+    server_.leave_silent_ones();
     return port;
   }
 
