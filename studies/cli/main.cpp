@@ -197,6 +197,7 @@ void run_command(const RunArguments& arguments) {
                                                : helps::Measuring::within_budget;
   options.prices = keys::read_given_prices(config);
   sim::WorkMeter meter;
+  progress::Foreseen foreseen;
   options.meter = &meter;
   if (!arguments.within.empty()) {
     run_within_command(arguments, config, std::move(options));
@@ -208,7 +209,8 @@ void run_command(const RunArguments& arguments) {
   if (!arguments.log.empty()) {
     log.emplace(arguments.log);
   }
-  std::optional<progress::ShownMeter> shown(std::in_place, meter);
+  options.foreseen = &foreseen;
+  std::optional<progress::ShownMeter> shown(std::in_place, meter, &foreseen);
   const run::RunResult result = run::run(config, std::move(options));
   const show::PlanVerdict verdict = arguments.verify_plan ? show::verify_plan(result) : show::PlanVerdict();
   shown.reset();  // before anything is printed

@@ -17,6 +17,10 @@
 #include "studies/keys/logged_frame.h"
 #include "studies/run/plan/plan.h"
 
+namespace marti::studies::run {
+class ExpectedTimes;
+}
+
 namespace marti::studies::keys {
 
 /// Which frames of an animated scene.
@@ -43,6 +47,7 @@ struct FrameConfig {
   sim::MemoryBudget memory;         ///< of scene, structure, image and work log together
   run::KeptItems keep;              ///< plan items to keep; no configuration key, as it changes no result
   sim::WorkMeter* meter = nullptr;  ///< is told how far the frame is; null: nobody waits for it
+  run::ExpectedTimes* expected = nullptr;  ///< is told what says how long it takes; null: nobody asks
   /// What is traced and how is that of this log, which is read in the place of the scene; null: it is traced.
   std::shared_ptr<const LoggedFrame> log{};
 

@@ -73,13 +73,15 @@ std::string progress_bar(std::uint64_t done, std::uint64_t of, std::size_t width
   return "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
-ShownMeter::ShownMeter(const sim::WorkMeter& meter) {
+ShownMeter::ShownMeter(const sim::WorkMeter& meter, const Foreseen* foreseen) {
   if (errors_go_to_a_terminal()) {
-    const auto text = [&meter, pace = Pace(), begin = std::chrono::steady_clock::now()]() mutable {
+    const auto text = [&meter, foreseen, pace = Pace(), estimate = WholeEstimate(),
+                       begin = std::chrono::steady_clock::now()]() mutable {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
       const sim::WorkMeter::State state = meter.state();
-      return meter_text(state, passed.count(),
-                        pace.left(state, {passed.count(), sim::process_cpu_seconds()}));
+      return meter_text(
+          state, passed.count(), pace.left(state, {passed.count(), sim::process_cpu_seconds()}),
+          foreseen == nullptr ? 0.0 : estimate.seconds(state, foreseen->parts(), passed.count()));
     };
     line_.emplace(ProgressLine::Options(), text);
     at_signal_.emplace([this](int /*signal*/) { line_->end(); }, host::AtSignal::Then::signal);
@@ -106,11 +108,13 @@ Duration Pace::left(const sim::WorkMeter::State& state, const Duration& now) {
   return {times * (now.seconds - first_.seconds), times * (now.processor - first_.processor)};
 }
 
-std::string meter_text(const sim::WorkMeter::State& state, double seconds, const Duration& left) {
+std::string meter_text(const sim::WorkMeter::State& state, double seconds, const Duration& left,
+                       double whole) {
   if (state.part.empty()) {
     return "";
   }
-  const std::string passed = tables::duration_text(seconds);
+  const std::string passed =
+      tables::duration_text(seconds) + (whole > 0.0 ? " of about " + tables::duration_text(whole) : "");
   if (state.whole_of != 0) {
     return progress_bar(state.whole_done, state.whole_of, usual_bar) +
            fmt::format("{} of {} {}, {}{}: {}", state.whole_done, state.whole_of, state.whole_unit, passed,
@@ -121,7 +125,8 @@ std::string meter_text(const sim::WorkMeter::State& state, double seconds, const
   }
   const std::uint64_t done = std::min(state.done, state.of);
   return progress_bar(done, state.of, usual_bar) + fmt::format("{}: {} of {} {}, {}{}", state.part, done,
-                                                               state.of, state.unit, passed, left_text(left));
+                                                               state.of, state.unit, passed,
+                                                               whole > 0.0 ? std::string() : left_text(left));
 }
 
 }  // namespace marti::studies::progress

@@ -13,6 +13,7 @@
 
 #include "sim/work_meter.h"
 #include "studies/host/signals_held.h"
+#include "studies/progress/whole_estimate.h"
 
 namespace marti::studies::progress {
 
@@ -55,10 +56,10 @@ class ProgressLine {
 inline constexpr std::size_t usual_bar = 24;
 
 /// Shows the meter while it lives, if standard error is a terminal and the work takes more than a fifth of a
-/// second. `meter` must outlive it.
+/// second. `meter` and `foreseen`, which may be null, must outlive it.
 class ShownMeter {
  public:
-  explicit ShownMeter(const sim::WorkMeter& meter);
+  explicit ShownMeter(const sim::WorkMeter& meter, const Foreseen* foreseen = nullptr);
 
  private:
   std::optional<ProgressLine> line_;
@@ -84,10 +85,11 @@ class Pace {
 };
 
 /// "[######......] tracing: 120 of 240 rows, 5.0 s, 15 s left (30 s of processor time)": what is done, how
-/// long the whole work has taken, and what is left of this part. Without steps that are counted there is no
+/// long the whole work has taken, and what is left of this part; "5.0 s of about 40 s" where the seconds of
+/// the `whole` work are known. Without steps that are counted there is no
 /// bar; empty before anything was begun. Of work that is planned as a whole, "[######......] 12 of 40
 /// parts, 5.0 s, 15 s left (30 s of processor time): tracing": all parts, and what is left of them.
 [[nodiscard]] std::string meter_text(const sim::WorkMeter::State& state, double seconds,
-                                     const Duration& left = {});
+                                     const Duration& left = {}, double whole = 0.0);
 
 }  // namespace marti::studies::progress

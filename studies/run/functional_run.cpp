@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <utility>
 
+#include "studies/run/expected_times.h"
 #include "studies/run/prepared_frame.h"
 #include "studies/run/saved_frame.h"
 
@@ -44,10 +46,16 @@ void refuse_beyond_memory(const keys::FrameConfig& config, const scenes::Scene& 
   sample.voxel_cut = 0.0;  // a coarse sample would cut more than the frame
   sim::WorkMeter of_sample(config.meter);
   sample.meter = &of_sample;
+  const auto begin = std::chrono::steady_clock::now();
   const processors::program::Frame frame = processors::program::render(scene, triangles, structure, sample);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const double pixels = static_cast<double>(config.render.width) * config.render.height;
   const double frames = config.exact_too ? 2.0 : 1.0;
   const processors::program::LogTotals totals = processors::program::totals_of(*frame.log);
+  if (config.expected != nullptr) {
+    config.expected->sampled(std::uint64_t{sample.width} * sample.height * sample.samples, took.count(),
+                             totals);
+  }
   std::uint64_t beside = 0;
   for (const processors::program::LogRow& row : frame.log->rows) {
     for (const processors::program::RowWords* const words : row.beside()) {

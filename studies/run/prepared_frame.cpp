@@ -16,6 +16,7 @@
 #include "sim/key_error.h"
 #include "sim/shown.h"
 #include "studies/host/image_file.h"
+#include "studies/run/expected_times.h"
 #include "studies/run/open_frame.h"
 
 namespace marti::studies::run {
@@ -108,6 +109,9 @@ void PreparedFrame::prepare(const scenes::Scene& scene) {
                       smaller_scene);
   keys::give_memory(config_.memory, config_.structure_options);
   sim::begin_part(config_.meter, "building the " + config_.structure);
+  if (config_.expected != nullptr) {
+    config_.expected->scene_read(scene.triangles.size() + scene.quadrics.size());
+  }
   triangles_ = std::make_shared<const accel::TriangleSet>(scene);
   structure_ = accel::make_structure(config_.structure, triangles_, config_.structure_options);
   // The work log has a copy of the tree.
@@ -146,6 +150,9 @@ processors::program::Frame PreparedFrame::trace(const processors::program::Pixel
   options.before = before;
   options.meter = config_.meter;
   sim::begin_part(config_.meter, "tracing", "rows", options.height);
+  if (config_.expected != nullptr) {
+    config_.expected->tracing_begins();
+  }
   return with_scene_keys(
       [&] { return processors::program::render(*scene_, *triangles_, *structure_, options); });
 }
@@ -162,6 +169,9 @@ FunctionalRun PreparedFrame::finish(processors::program::Frame frame) const {
   run.frame = std::move(frame);
   std::vector<std::uint64_t> shades;
   run.totals = processors::program::totals_of(*run.frame.log, &shades);
+  if (config_.expected != nullptr) {
+    config_.expected->traced(run.totals);
+  }
   run.image_hash = image_hash(run.frame.image);
   if (std::string note = host::note_of_infinities(run.frame.image); !note.empty()) {
     run.notes.push_back(std::move(note));

@@ -18,6 +18,7 @@
 #include "studies/keys/machine_keys.h"
 #include "studies/keys/other_commands.h"
 #include "studies/keys/record_keys.h"
+#include "studies/run/expected_times.h"
 #include "studies/run/plan/machine_plan.h"
 #include "studies/run/record/interval_figures.h"
 #include "studies/run/record/observers.h"
@@ -161,6 +162,15 @@ processors::replay::MachineResult watched_replay(const keys::RecordConfig& recor
   return timed;
 }
 
+// Stripping takes less time than the two machines save, but not where little is taken out.
+bool strips_for_both(const processors::machine::MachineConfig& machine,
+                     const processors::machine::MachineConfig& other) {
+  using processors::walk::StrippedLog;
+  return StrippedLog::ways_of(machine) != 0 && !StrippedLog::key_of(machine).empty() &&
+         StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
+         StrippedLog::key_of(machine) == StrippedLog::key_of(other);
+}
+
 // The log stripped for `machine` and `other`, which both walk it; null where that would not be faster or
 // would take more than half of the memory that the work log, the machine and heat maps leave.
 std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
@@ -168,11 +178,7 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
     const processors::machine::MachineConfig& machine, const processors::machine::MachineConfig& other,
     const RunOptions& options) {
   using processors::walk::StrippedLog;
-  // Stripping takes less time than the two save, but not where little is taken out.
-  const bool pays = StrippedLog::ways_of(machine) != 0 &&
-                    StrippedLog::ways_of(machine) == StrippedLog::ways_of(other) &&
-                    StrippedLog::key_of(machine) == StrippedLog::key_of(other);
-  if (!pays) {
+  if (!strips_for_both(machine, other)) {
     return nullptr;
   }
   const std::uint64_t taken = log_bytes + processors::replay::host_bytes(log, machine) + map_bytes(frame);
@@ -314,6 +320,14 @@ RunResult run(sim::Config& config, RunOptions options) {
     sim::with_places(config, [&] { processors::path::check_critical_path(result.machine); });
   }
   result.values = config.effective_values();
+  std::optional<ExpectedTimes> expected;
+  if (options.foreseen != nullptr && !options.functional && result.frame_config.log == nullptr) {
+    result.frame_config.expected = &expected.emplace(*options.foreseen);
+    const bool strips = result.machine.all_nodes() > 1 &&
+                        strips_for_both(result.machine, processors::machine::one_node_of(result.machine));
+    expected->begin(result.frame_config, result.machine, strips,
+                    options.what_helps != helps::Measuring::none);
+  }
   sim::with_places(config, [&] {
     result.functional =
         options.functional ? std::move(*options.functional) : run_functional(result.frame_config);
@@ -321,10 +335,14 @@ RunResult run(sim::Config& config, RunOptions options) {
       host::load_image_library();  // before the machine is timed, which may take long
     }
     std::shared_ptr<const processors::walk::StrippedLog> stripped = time_frame(record, options, result);
+    if (expected) {
+      expected->timed();
+    }
     if (options.what_helps != helps::Measuring::none) {
       result.helps = measure_help(config, options, std::move(stripped), result);
     }
   });
+  result.frame_config.expected = nullptr;
   return result;
 }
 

@@ -16,6 +16,7 @@
 #include "sim/statistics.h"
 #include "studies/figures/derived_figures.h"
 #include "studies/helps/what_helps.h"
+#include "studies/progress/whole_estimate.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/kept_stripped_logs.h"
 #include "studies/run/record/heat_map.h"
@@ -82,6 +83,7 @@ struct RunOptions {
   KeptStrippedLogs* stripped_logs = nullptr;
   /// Is told how far the run is; after its stop() the run soon throws sim::Stopped. Null: nobody waits.
   sim::WorkMeter* meter = nullptr;
+  progress::Foreseen* foreseen = nullptr;  ///< is told how long the meter's parts take; null: nobody asks
 };
 
 /// Runs a configuration: one functional run, the machine and the same machine with one node. Throws UserError

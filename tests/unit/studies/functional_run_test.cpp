@@ -55,6 +55,41 @@ TEST(FunctionalRun, SaysThatATreeWasCut) {
   }
 }
 
+// What a run says of its parts while it works is complete, in order, and better known at the end.
+TEST(ExpectedTimes, AreOfAllPartsOfARun) {
+  const auto parts_of = [](const std::string& machine, Measuring help) {
+    sim::Config config = sim::Config::from_text(
+        run_schema(), "scene.source = \"teapot:4\"\nimage.width = 80\nimage.height = 80\n" + machine,
+        "a.toml");
+    sim::WorkMeter meter;
+    progress::Foreseen foreseen;
+    RunOptions options;
+    options.meter = &meter;
+    options.foreseen = &foreseen;
+    options.what_helps = help;
+    const RunResult result = run::run(config, std::move(options));
+    EXPECT_EQ(result.frame_config.expected, nullptr) << "it ends with the run";
+    std::vector<progress::ForeseenPart> parts = foreseen.parts();
+    for (const progress::ForeseenPart& part : parts) {
+      EXPECT_TRUE(std::isfinite(part.seconds) && part.seconds >= 0.0) << part.name;
+    }
+    EXPECT_TRUE(meter.state().part.starts_with(parts.back().name)) << meter.state().part;
+    return parts;
+  };
+  const std::vector<progress::ForeseenPart> all = parts_of("machine.nodes = 4\n", Measuring::within_budget);
+  ASSERT_EQ(all.size(), 6U);
+  const std::vector<progress::ForeseenPart> one = parts_of("machine.nodes = 1\n", Measuring::none);
+  ASSERT_EQ(one.size(), 5U);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].name, all[i].name);
+  }
+  EXPECT_EQ(one[0].seconds, 0.0) << "no file is read";
+  EXPECT_EQ(one[1].seconds, all[1].seconds) << "one scene";
+  EXPECT_GT(all[3].seconds, 0.0);
+  EXPECT_EQ(one[3].seconds, 0.0) << "one node walks the whole log";
+  EXPECT_GT(all[5].seconds, 0.0);
+}
+
 // A frame of given rays is a rectangle that holds them all, with fewer pixels to spare than it has rows.
 TEST(FunctionalRun, GivenRaysAreAFrame) {
   const test::TemporaryDirectory directory;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <thread>
@@ -10,6 +11,7 @@
 
 #include "sim/work_meter.h"
 #include "studies/progress/progress_line.h"
+#include "studies/progress/whole_estimate.h"
 #include "tests/support/screen.h"
 
 namespace marti::studies {
@@ -71,6 +73,9 @@ TEST(ShownMeter, SaysWhatIsDone) {
   EXPECT_EQ(meter_text({"timing machines", "machines", 3, 12}, 5.0, {12.0, 24.0}),
             "[######..................] timing machines: 3 of 12 machines, 5.0 s, 12.0 s left (24.0 s of "
             "processor time)");
+  EXPECT_EQ(meter_text({"tracing", "rows", 120, 240}, 65.0, {60.0, 60.0}, 195.0),
+            "[############............] tracing: 120 of 240 rows, 1 min 05 s of about 3 min 15 s");
+  EXPECT_EQ(meter_text({"building the octree"}, 5.0, {}, 20.0), "building the octree, 5.0 s of about 20.0 s");
 }
 
 // What is left takes as long as parts of its kind have taken; those that were found finished took no time.
@@ -111,6 +116,57 @@ TEST(Pace, IsThatOfTheStepsSeenDone) {
   EXPECT_EQ(left(3, {30.0, 30.0}, "tracing").seconds, 0.0) << "another part";
   EXPECT_EQ(left(6, {33.0, 31.0}, "tracing").seconds, 6.0);
   EXPECT_EQ(pace.left({"reading", "", 0, 0}, {40.0, 40.0}).seconds, 0.0) << "what is not counted";
+}
+
+const std::vector<ForeseenPart> three_parts = {{"reading", 2.0, false}, {"tracing", 4.0}, {"timing", 6.0}};
+
+// Where all takes what was foreseen, the estimate is the truth at any time, up to what is kept in reserve for
+// a part that is nearly over and not counted.
+TEST(WholeEstimate, IsTheTruthWhereAllIsAsForeseen) {
+  WholeEstimate estimate;
+  for (int quarter = 0; quarter <= 48; ++quarter) {
+    const double passed = 0.25 * quarter;
+    const sim::WorkMeter::State state =
+        passed < 2.0   ? sim::WorkMeter::State{"reading the scene"}
+        : passed < 6.0 ? sim::WorkMeter::State{"tracing", "rows", static_cast<std::uint64_t>(quarter - 8), 16}
+                       : sim::WorkMeter::State{"timing the machine", "packets",
+                                               static_cast<std::uint64_t>(quarter - 24), 24};
+    EXPECT_NEAR(estimate.seconds(state, three_parts, passed), 12.0, passed < 2.0 ? 0.1 : 1e-9) << passed;
+  }
+}
+
+// A part that is counted says itself how long it takes: what was foreseen wrongly does less and less harm,
+// and none at the end.
+TEST(WholeEstimate, ComesToTheTruthWhateverWasForeseen) {
+  for (const double times : {0.1, 0.5, 2.0, 10.0}) {
+    WholeEstimate estimate;
+    double error = 1e300;
+    for (std::uint64_t step = 0; step <= 100; ++step) {
+      const double passed = 6.0 * times * static_cast<double>(step) / 100.0;
+      const double seconds = estimate.seconds({"timing", "packets", step, 100}, {{"timing", 6.0}}, passed);
+      EXPECT_GE(seconds, passed);
+      if (step > 25) {
+        EXPECT_LE(std::abs(seconds - 6.0 * times), error + 1e-9) << times << " " << step;
+      }
+      error = std::abs(seconds - 6.0 * times);
+    }
+    EXPECT_NEAR(error, 0.0, 1e-9) << times;
+  }
+}
+
+TEST(WholeEstimate, KnowsOfPartsOverAndToComeAndOfNoOthers) {
+  WholeEstimate estimate;
+  EXPECT_EQ(estimate.seconds({"reading the log"}, {}, 1.0), 0.0);
+  EXPECT_EQ(estimate.seconds({"verifying"}, three_parts, 1.0), 0.0);
+  EXPECT_EQ(estimate.seconds({"reading"}, three_parts, 1.0), 12.0);
+  const double overdue = estimate.seconds({"reading"}, three_parts, 4.0);
+  EXPECT_GT(overdue, 14.0) << "it is not done";
+  EXPECT_LT(overdue, 5.0 + 2.0 * 10.0) << "what is to come takes at most twice as long, too";
+  // Reading took 5 s in place of 2: the computer is taken for slower, within bounds. Nothing was traced.
+  const double timing = estimate.seconds({"timing", "packets", 0, 10}, three_parts, 5.0);
+  EXPECT_GE(timing, 5.0 + 6.0 / 2.0);
+  EXPECT_LE(timing, 5.0 + 6.0 * 2.0);
+  EXPECT_EQ(estimate.seconds({"timing", "packets", 10, 10}, three_parts, 9.0), 9.0);
 }
 
 std::string content_of(std::FILE* file) {
