@@ -175,13 +175,16 @@ Surface<Real> surface_at(const scenes::Scene& scene, const scenes::HitTriangle& 
     std::swap(t.vertex[1], t.vertex[2]);
     std::swap(b[1], b[2]);
   }
-  const auto position = [&](std::size_t k) {
-    const glm::dvec3& own = scene.positions[t.vertex[k]];
-    return Vec3<Real>(hit.place == nullptr ? own : hit.place->of(own));
-  };
-  const Vec3<Real> p0 = position(0);
-  const Vec3<Real> p1 = position(1);
-  const Vec3<Real> p2 = position(2);
+  glm::dvec3 corners[3] = {scene.positions[t.vertex[0]], scene.positions[t.vertex[1]],
+                           scene.positions[t.vertex[2]]};
+  if (hit.place != nullptr) [[unlikely]] {
+    for (glm::dvec3& corner : corners) {
+      corner = hit.place->of(corner);
+    }
+  }
+  const Vec3<Real> p0(corners[0]);
+  const Vec3<Real> p1(corners[1]);
+  const Vec3<Real> p2(corners[2]);
 
   Surface<Real> surface;
   const Vec3<Real> t0 = p0 * b[0];
@@ -204,9 +207,15 @@ Surface<Real> surface_at(const scenes::Scene& scene, const scenes::HitTriangle& 
   surface.normal = surface.geometric;
   bound_rounding(surface, {p0, p1, p2}, b, reach);
   if (!scene.normals.empty()) {
+    glm::dvec3 normals[3] = {scene.normals[t.vertex[0]], scene.normals[t.vertex[1]],
+                             scene.normals[t.vertex[2]]};
+    if (hit.place != nullptr) [[unlikely]] {
+      for (glm::dvec3& normal : normals) {
+        normal = hit.place->normal_of(normal);
+      }
+    }
     const auto corner = [&](int k) {
-      const glm::dvec3& given = scene.normals[t.vertex[static_cast<std::size_t>(k)]];
-      const glm::dvec3 n = hit.place == nullptr ? given : hit.place->normal_of(given);
+      const glm::dvec3& n = normals[k];
       const bool none = n.x == 0.0 && n.y == 0.0 && n.z == 0.0;
       const Vec3<Real> own(n);
       // Vertex normals may point to either side: each is brought to the viewer's before they are mixed.
