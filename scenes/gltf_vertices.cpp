@@ -13,14 +13,6 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-/// The inverse transpose of the upper 3 x 3 part up to a positive factor: its cofactors, negated for a
-/// mirroring transform. It needs no division, so singular transforms cause no error.
-glm::dmat3 normal_transform(const glm::dmat4& world) {
-  const glm::dmat3 m(world);
-  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return glm::dot(m[0], cofactors[0]) < 0.0 ? -cofactors : cofactors;
-}
-
 /// The sum of a vertex's vector and its weighted displacements. A displacement with weight 0 is left out even
 /// if it is not finite; without weights all are left out.
 glm::dvec3 morphed(glm::dvec3 vector, const VertexSource& source, const std::vector<double>* weights,
@@ -75,10 +67,7 @@ int attribute(const std::map<std::string, int>& attributes, const std::string& n
   return found == attributes.end() ? -1 : found->second;
 }
 
-bool is_mirrored(const glm::dmat4& world) {
-  const glm::dmat3 m(world);
-  return glm::dot(m[0], glm::cross(m[1], m[2])) < 0.0;
-}
+bool is_mirrored(const glm::dmat4& world) { return is_mirroring(glm::dmat3(world)); }
 
 std::shared_ptr<const VertexSource> VertexReader::read(const tinygltf::Primitive& primitive, bool skinned,
                                                        const std::string& name) {
@@ -233,11 +222,11 @@ void pose_vertices(const VertexInstance& instance, const Pose& pose, Scene& scen
   const bool skinned = instance.skin >= 0;
   const bool with_normals = !source.normals.empty();
   glm::dmat4 world = node.world;
-  glm::dmat3 turn = with_normals ? normal_transform(world) : glm::dmat3(1.0);
+  glm::dmat3 turn = with_normals ? normal_transform(glm::dmat3(world)) : glm::dmat3(1.0);
   for (std::size_t i = 0; i < source.positions.size(); ++i) {
     if (skinned) {
       world = blended(source, pose.joints[static_cast<std::size_t>(instance.skin)], i);
-      turn = with_normals ? normal_transform(world) : turn;
+      turn = with_normals ? normal_transform(glm::dmat3(world)) : turn;
     }
     const std::size_t at = instance.first + i;
     const glm::dvec3 bound = morphed(source.positions[i], source, weights, &MorphTarget::positions, i);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+
+#include "scenes/vertex_values.h"
 
 namespace marti::scenes {
 
@@ -28,16 +29,10 @@ bool within(const glm::dmat3& m, double most) {
 }  // namespace
 
 glm::dvec3 InstancePlace::normal_of(const glm::dvec3& normal) const {
-  // The matrix of cofactors is the inverse transposed, times the determinant.
-  const glm::dvec3 turned = glm::cross(linear[1], linear[2]) * normal.x +
-                            glm::cross(linear[2], linear[0]) * normal.y +
-                            glm::cross(linear[0], linear[1]) * normal.z;
-  const double length = glm::length(turned);
-  return length > 0.0 && std::isfinite(length) ? turned * ((mirrors() ? -1.0 : 1.0) / length)
-                                               : glm::dvec3(0.0);
+  return unit_or_zero(normal_transform(linear) * normal);
 }
 
-bool InstancePlace::mirrors() const { return glm::determinant(linear) < 0.0; }
+bool InstancePlace::mirrors() const { return is_mirroring(linear); }
 
 double stretch_of(const glm::dmat3& linear) {
   const glm::dmat3 inverse = glm::inverse(linear);

@@ -1,9 +1,10 @@
-// Internal to scenes/: which positions and normals of files can be used.
+// Internal to scenes/: which positions and normals of files can be used, and what transforms make of normals.
 #pragma once
 
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -34,6 +35,18 @@ inline constexpr double largest_coordinate = 1e30;
   const bool usable = std::isfinite(unit.x) && std::isfinite(unit.y) && std::isfinite(unit.z) &&
                       std::abs(glm::length(unit) - 1.0) < 1e-6;
   return usable ? unit : glm::dvec3(0.0);
+}
+
+/// Whether the transform reverses the winding of triangles.
+[[nodiscard]] inline bool is_mirroring(const glm::dmat3& m) {
+  return glm::dot(m[0], glm::cross(m[1], m[2])) < 0.0;
+}
+
+/// The inverse transpose up to a positive factor: the cofactors, negated for a mirroring transform. It needs
+/// no division, so singular transforms cause no error.
+[[nodiscard]] inline glm::dmat3 normal_transform(const glm::dmat3& m) {
+  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return is_mirroring(m) ? -cofactors : cofactors;
 }
 
 }  // namespace marti::scenes
