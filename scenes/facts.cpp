@@ -68,6 +68,7 @@ std::uint64_t host_bytes(const Scene& scene) {
   std::uint64_t bytes = scene.positions.size() * sizeof(glm::dvec3) +
                         scene.normals.size() * sizeof(glm::dvec3) + scene.uvs.size() * sizeof(glm::dvec2) +
                         scene.triangles.size() * sizeof(Triangle) + scene.quadrics.size() * sizeof(Quadric) +
+                        scene.instances.size() * sizeof(InstancePlace) +
                         scene.rays.rays.size() * sizeof(GivenRay) + scene.rays.any.size() / 8;
   for (const Texture& texture : scene.textures) {
     bytes += texture.texels.size() * sizeof(texture.texels[0]) +

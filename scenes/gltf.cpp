@@ -22,6 +22,7 @@
 #include "scenes/gltf_use.h"
 #include "scenes/gltf_vertices.h"
 #include "scenes/gltf_view.h"
+#include "scenes/merged_instances.h"
 #include "scenes/scene_notes.h"
 #include "sim/error.h"
 #include "sim/shown.h"
@@ -163,7 +164,7 @@ class GltfPoses : public PoseSource {
     gltf::Materials materials(model_, decode, still_, left_out);
     gltf::MeshReader meshes(model_, materials, *skins_, still_, left_out);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (model_.data().nodes[static_cast<std::size_t>(nodes_[i].node)].mesh >= 0 && !kept.keeps(i)) {
+      if (nodes_[i].mesh >= 0 && !kept.keeps(i)) {
         meshes.add(i, pose);
       }
     }
@@ -194,7 +195,7 @@ class GltfPoses : public PoseSource {
       gltf::read_unused(model_, materials);
     }
     note_extensions(model_, still_);
-    kept.note(still_);
+    note_instances(still_);
     note_left_out(left_out, still_);
     note_bad_positions(meshes.bad_triangles(), "triangles", still_);
     if (animation_) {

@@ -14,10 +14,10 @@ namespace marti::scenes::gltf {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> supported_extensions = {
-    "EXT_texture_webp",     "KHR_lights_punctual",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",    "KHR_materials_transmission", "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 8> supported_extensions = {
+    "EXT_mesh_gpu_instancing",         "EXT_texture_webp",     "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_transmission",
+    "KHR_mesh_quantization",           "KHR_texture_transform"};
 /// Extensions that change no geometry: without them a file looks otherwise, and no more.
 constexpr std::array<std::string_view, 14> appearances = {"KHR_materials_anisotropy",
                                                           "KHR_materials_clearcoat",

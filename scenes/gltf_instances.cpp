@@ -76,7 +76,7 @@ Expanded expanded_instances(const Model& model, const std::vector<SceneNode>& no
   Expanded all;
   std::map<int, Expanded> known;
   for (const SceneNode& node : nodes) {
-    const int mesh = file.nodes[static_cast<std::size_t>(node.node)].mesh;
+    const int mesh = node.mesh;
     if (mesh < 0 || static_cast<std::size_t>(mesh) >= file.meshes.size()) {
       continue;
     }

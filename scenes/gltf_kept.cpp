@@ -58,8 +58,9 @@ KeptMeshes::KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, 
   std::map<int, std::vector<std::size_t>> users;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(nodes[i].node)];
-    if (node.mesh >= 0 && node.skin < 0 && why_not_kept(place_of(pose.nodes[i].world)).empty()) {
-      users[node.mesh].push_back(i);
+    const int mesh = nodes[i].mesh;
+    if (mesh >= 0 && node.skin < 0 && why_not_kept(place_of(pose.nodes[i].world)).empty()) {
+      users[mesh].push_back(i);
     }
   }
   for (auto& [mesh, places] : users) {
@@ -112,16 +113,6 @@ void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) const {
     scene.meshes.push_back({first, count});
   }
   number_instances(scene);
-}
-
-void KeptMeshes::note(Scene& scene) const {
-  if (scene.instances.empty()) {
-    return;
-  }
-  const InstancePlace& last = scene.instances.back();
-  scene.notes.push_back("Instances are kept: " + std::to_string(scene.instances.size()) + " of " +
-                        std::to_string(scene.meshes.size()) + " meshes stand for " +
-                        std::to_string(last.first + scene.meshes[last.mesh].count) + " triangles.");
 }
 
 }  // namespace marti::scenes::gltf

@@ -27,8 +27,6 @@ class KeptMeshes {
   [[nodiscard]] std::vector<SceneNode> distinct(const std::vector<SceneNode>& nodes) const;
   /// Adds the kept meshes behind what is in the scene, each in its own coordinates, and all instances.
   void add(MeshReader& reader, Pose& pose, Scene& scene) const;
-  /// Says how many instances there are.
-  void note(Scene& scene) const;
 
  private:
   std::vector<bool> kept_;                          // by place

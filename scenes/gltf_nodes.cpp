@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "scenes/gltf_instancing.h"
 #include "sim/nearest.h"
 #include "sim/parse_number.h"
 #include "sim/shown.h"
@@ -60,22 +61,21 @@ glm::dmat4 local_transform(const Model& model, int index, const NodeChange& chan
   check(translation, 3, "translation");
   check(rotation, 4, "rotation");
   check(scale, 3, "scale");
-  glm::dmat4 m(1.0);
+  Transform parts;
+  if (!translation.empty()) {
+    parts.translation = glm::make_vec3(translation.data());
+  }
   if (!rotation.empty()) {
-    const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);
-    const double length = glm::length(q);
-    if (!is_usable_quaternion(length)) {
-      model.fail(name_of_node(index) + ": its rotation is no unit quaternion");
-    }
-    m = glm::mat4_cast(q / length);
+    parts.rotation = glm::dquat(rotation[3], rotation[0], rotation[1], rotation[2]);
   }
-  for (int axis = 0; axis < 3 && !scale.empty(); ++axis) {
-    m[axis] *= scale[static_cast<std::size_t>(axis)];
+  if (!scale.empty()) {
+    parts.scale = glm::make_vec3(scale.data());
   }
-  for (int axis = 0; axis < 3 && !translation.empty(); ++axis) {
-    m[3][axis] = translation[static_cast<std::size_t>(axis)];
+  const std::optional<glm::dmat4> matrix = parts.matrix();
+  if (!matrix) {
+    model.fail(name_of_node(index) + ": its rotation is no unit quaternion");
   }
-  return m;
+  return *matrix;
 }
 
 struct Family {
@@ -182,20 +182,41 @@ std::vector<int> roots_of_scene(const Model& model, const Family& family, LeftOu
 
 }  // namespace
 
+std::optional<glm::dmat4> Transform::matrix() const {
+  const double length = glm::length(rotation);
+  if (!is_usable_quaternion(length)) {
+    return std::nullopt;
+  }
+  glm::dmat4 m = glm::mat4_cast(rotation / length);
+  for (int axis = 0; axis < 3; ++axis) {
+    m[axis] *= scale[axis];
+    m[3][axis] = translation[axis];
+  }
+  return m;
+}
+
 std::vector<SceneNode> nodes_of_scene(const Model& model, LeftOut& left_out) {
   const std::vector<int> roots = roots_of_scene(model, find_parents(model), left_out);
   std::vector<SceneNode> nodes;
   // An explicit stack, because the file decides the depth of the hierarchy. Pushed in reverse to keep order.
   std::vector<SceneNode> open;
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-    open.push_back({*root, -1});
+    open.push_back({*root});
   }
   while (!open.empty()) {
     const SceneNode here = open.back();
     open.pop_back();
     const int place = static_cast<int>(nodes.size());
+    const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(here.node)];
     nodes.push_back(here);
-    const std::vector<int>& children = model.data().nodes[static_cast<std::size_t>(here.node)].children;
+    if (is_instanced(node)) {
+      for (const glm::dmat4& transform : instance_transforms(model, here.node)) {
+        nodes.push_back({here.node, place, node.mesh, transform});
+      }
+    } else {
+      nodes.back().mesh = node.mesh;
+    }
+    const std::vector<int>& children = node.children;
     for (auto child = children.rbegin(); child != children.rend(); ++child) {
       open.push_back({*child, place});
     }
@@ -211,10 +232,11 @@ std::vector<PlacedNode> place_nodes(const Model& model, const std::vector<SceneN
   for (const SceneNode& node : nodes) {
     const auto change = changes.find(node.node);
     const glm::dmat4 local =
-        local_transform(model, node.node, change == changes.end() ? none : change->second);
+        node.place ? *node.place
+                   : local_transform(model, node.node, change == changes.end() ? none : change->second);
     const glm::dmat4 above =
         node.parent < 0 ? glm::dmat4(1.0) : placed[static_cast<std::size_t>(node.parent)].world;
-    placed.push_back({node.node, above * local});
+    placed.push_back({node.node, !node.place, above * local});
     if (!is_finite(placed.back().world)) {
       model.fail(name_of_node(node.node) + ": its transform to world space is not finite");
     }

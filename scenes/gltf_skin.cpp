@@ -25,7 +25,7 @@ Skins::Skin Skins::read(int skin, int node) {
   }
   if (place_of_node_.empty()) {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      place_of_node_[nodes_[i].node] = i;
+      place_of_node_.emplace(nodes_[i].node, i);  // of which the places of its mesh follow
     }
   }
   Skin read;

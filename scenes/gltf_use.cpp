@@ -43,10 +43,11 @@ FileUse use_of(const Model& model, const std::vector<SceneNode>& nodes, const Ma
                const Chosen& chosen) {
   const tinygltf::Model& file = model.data();
   std::set<int> meshes;
+  std::uint64_t of_file = 0;
   for (const SceneNode& node : nodes) {
-    const int mesh = file.nodes[static_cast<std::size_t>(node.node)].mesh;
-    if (mesh >= 0) {
-      meshes.insert(mesh);
+    of_file += node.place ? 0U : 1U;
+    if (node.mesh >= 0) {
+      meshes.insert(node.mesh);
     }
   }
   FileUse use;
@@ -61,7 +62,7 @@ FileUse use_of(const Model& model, const std::vector<SceneNode>& nodes, const Ma
     use.unread_bytes += used ? 0 : stated_bytes(file, file.images[i]);
   }
   use.parts = {{"scenes", file.scenes.size(), std::min<std::uint64_t>(1, file.scenes.size())},
-               {"nodes", file.nodes.size(), nodes.size()},
+               {"nodes", file.nodes.size(), of_file},
                {"meshes", file.meshes.size(), meshes.size()},
                {"materials", file.materials.size(), materials.used()},
                {"images", file.images.size(), materials.used_images().size()},

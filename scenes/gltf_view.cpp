@@ -134,7 +134,7 @@ void add_lights(const Model& model, const std::vector<PlacedNode>& nodes, Scene&
   for (const PlacedNode& place : nodes) {
     const tinygltf::Node& node = model.data().nodes[static_cast<std::size_t>(place.node)];
     const auto found = node.extensions.find("KHR_lights_punctual");
-    if (found == node.extensions.end()) {
+    if (!place.of_file || found == node.extensions.end()) {
       continue;
     }
     const std::optional<int> index = index_in(found->second, "light");

@@ -8,7 +8,6 @@
 #include "scenes/append_geometry.h"
 #include "scenes/camera_file.h"
 #include "scenes/default_view.h"
-#include "sim/key_error.h"
 
 namespace marti::scenes {
 
@@ -28,12 +27,6 @@ MergedScene::MergedScene(const SourceFile& whole) : whole_(whole), part_{{}, who
   part_.file.default_light = DefaultLight::never;
   part_.file.animation = "none";
   part_.file.time = 0.0;
-  if (part_.file.instances == Instances::kept) {
-    throw sim::KeyError(
-        "structure.instances",
-        "several files are copied into one scene; set \"copied\", or make one glTF file of them");
-  }
-  part_.file.instances = Instances::copied;
 }
 
 void MergedScene::open(std::string_view spec, const std::filesystem::path& base_directory,
@@ -82,7 +75,7 @@ void MergedScene::add(Scene part, const std::string& name) {
     scene_.ambient = part.ambient;
   }
   scene_.lights_are_all = scene_.lights_are_all || part.lights_are_all;
-  append_geometry(scene_, part, materials);
+  instances_.append(scene_, part, materials);
   append(scene_.materials, std::move(part.materials));
   append(scene_.textures, std::move(part.textures));
   append(scene_.lights, std::move(part.lights));
@@ -95,9 +88,10 @@ void MergedScene::add(Scene part, const std::string& name) {
 }
 
 AnimatedScene MergedScene::finish(std::string name) && {
-  if (scene_.triangles.empty() && scene_.quadrics.empty()) {
+  if (scene_.triangles.empty() && scene_.quadrics.empty() && instances_.empty()) {
     whole_.fail("none of its " + std::to_string(parts_ + without_triangles_.size()) + " parts has triangles");
   }
+  instances_.finish(scene_);
   scene_.name = std::move(name);
   if (!without_triangles_.empty()) {
     constexpr std::size_t most_names = 8;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/animated.h"
+#include "scenes/merged_instances.h"
 #include "scenes/open.h"
 #include "scenes/placement.h"
 #include "scenes/source_file.h"
@@ -41,6 +42,7 @@ class MergedScene {
   const SourceFile& whole_;
   OpenOptions part_;
   Scene scene_;
+  MergedInstances instances_;
   std::size_t parts_ = 0;
   FileUse use_;
   std::vector<std::string> without_triangles_;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <map>
 #include <new>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,8 +21,10 @@
 
 #include "scenes/append_geometry.h"
 #include "scenes/default_view.h"
+#include "scenes/merged_instances.h"
 #include "scenes/open.h"
 #include "scenes/pbrt_color.h"
+#include "scenes/pbrt_light.h"
 #include "scenes/pbrt_material.h"
 #include "scenes/pbrt_shape.h"
 #include "scenes/pbrt_text.h"
@@ -43,7 +45,6 @@ constexpr std::array<std::string_view, 5> rendering = {"Sampler", "Integrator", 
                                                        "Option"};
 
 constexpr std::size_t most_states = 1024;
-constexpr double largest_light = 1e12;
 constexpr std::uint64_t bytes_of_name = 512;  // of what has a name, at least
 
 /// What a shape has that is not its own.
@@ -59,12 +60,18 @@ struct State {
 struct Object {
   Scene scene;
   std::uint64_t bytes = 0;
+  bool shines = false;
+  std::vector<InstancePlace> kept;  // where it stands without being copied
 };
+
+/// Thrown when copies of objects become so many that they should be kept.
+struct ManyCopies {};
 
 class Reader {
  public:
-  Reader(const SourceFile& file, const ImageDecoder& decode)
-      : file_(file), text_(file), materials_(file, text_, decode, scene_, left_out_) {
+  /// Objects are kept if `instances` says so, else copied; automatic: until there are many copies.
+  Reader(const SourceFile& file, const ImageDecoder& decode, Instances instances)
+      : file_(file), instances_(instances), text_(file), materials_(file, text_, decode, scene_, left_out_) {
     left_out_.strict = file.options().strict;
   }
 
@@ -135,8 +142,8 @@ class Reader {
       }
       states_.push_back(state_);
       file_.take_memory(bytes_of_name + sizeof(Object), "its names take");
-      object_ = &objects_[text_.text()];
-      *object_ = {};
+      object_ = &objects_.emplace_back();
+      object_of_name_[text_.text()] = object_;
     } else if (name == "ObjectEnd") {
       if (object_ == nullptr || states_.empty()) {
         text_.fail("ObjectEnd without its begin");
@@ -228,8 +235,12 @@ class Reader {
     }
     left_out_.features["textures on shapes without texture coordinates"] +=
         scene_.materials[*material].texture != no_texture && shape->uvs.empty() ? 1U : 0U;
-    if (state_.emission != glm::dvec3(0.0)) {
-      tessellate(*shape);  // paths find triangles that emit light
+    const bool shines = state_.emission != glm::dvec3(0.0);
+    if (object_ != nullptr) {
+      object_->shines = object_->shines || shines;
+    }
+    if (shines || instances_ == Instances::kept) {
+      tessellate(*shape);  // paths find triangles that emit light, and instances are of triangles
     }
     if (state_.reversed) {
       for (Triangle& triangle : shape->triangles) {
@@ -246,14 +257,44 @@ class Reader {
     if (object_ != nullptr) {
       text_.fail("an instance lies in an object");
     }
-    const auto object = objects_.find(name);
-    if (object == objects_.end()) {
+    const auto named = object_of_name_.find(name);
+    if (named == object_of_name_.end()) {
       text_.fail("there is no object " + in_quotes(name) + " before it");
     }
-    check_size(object->second.scene);
-    file_.require_memory(object->second.bytes, "an instance takes");
-    Scene copy = object->second.scene;
+    Object& object = *named->second;
+    if (instances_ == Instances::kept && !object.shines && !object.scene.triangles.empty()) {
+      const Placement placement = placement_of(state_.transform, text_);
+      InstancePlace place;
+      place.linear = placement.linear;
+      place.shift = placement.offset;
+      if (why_not_kept(place).empty()) {
+        file_.take_memory(2 * sizeof place, "its instances take");
+        object.kept.push_back(place);
+        return;
+      }
+    }
+    copied_ += object.scene.triangles.size();
+    if (instances_ == Instances::automatic && copied_ > many_copies) {
+      throw ManyCopies();
+    }
+    check_size(object.scene);
+    file_.require_memory(object.bytes, "an instance takes");
+    Scene copy = object.scene;
     add(copy, state_.transform, 0);
+  }
+
+  /// Puts the objects that are kept behind all other geometry.
+  void add_kept() {
+    MergedInstances all;
+    for (Object& object : objects_) {
+      if (!object.kept.empty()) {
+        object.scene.meshes = {{0, static_cast<std::uint32_t>(object.scene.triangles.size())}};
+        object.scene.instances = std::move(object.kept);
+        check_size(object.scene);
+        all.append(scene_, object.scene, 0);
+      }
+    }
+    all.finish(scene_);
   }
 
   void check_size(const Scene& part) const {
@@ -274,46 +315,13 @@ class Reader {
   }
 
   void add_light_source(const std::string& kind, const Parameters& parameters) {
-    const double scale = parameters.number("scale", 1.0, 0.0, largest_light);
-    if (kind == "infinite") {
-      left_out_.features["images of infinite lights, which are white skies"] +=
-          parameters.find("filename") != nullptr || parameters.find("mapname") != nullptr ? 1U : 0U;
-      const glm::dvec3 sky = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) * scale;
-      scene_.background = glm::min(scene_.background + sky, glm::dvec3(largest_emission));
-      scene_.ambient = scene_.background;
+    const std::optional<Light> light = light_source(kind, parameters, scene_, left_out_);
+    if (!light) {
       return;
     }
-    Light light;
-    const bool distant = kind == "distant";
-    light.color = color_in(parameters, distant ? "L" : "I", glm::dvec3(1.0), largest_light, left_out_) *
-                  (scale * std::numbers::inv_pi);
-    const glm::dvec3 from = parameters.vector("from", glm::dvec3(0.0));
-    const glm::dvec3 to = parameters.vector("to", glm::dvec3(0.0, 0.0, 1.0));
-    light.position = from;
-    light.direction = unit_or_zero(to - from);
-    light.inverse_square = !distant;
-    if (distant) {
-      light.kind = LightKind::directional;
-    } else if (kind == "spot") {
-      light.kind = LightKind::spot;
-      const double angle = parameters.number("coneangle", 30.0, 0.0, 90.0);
-      light.cos_outer_cone = std::cos(glm::radians(angle));
-      light.cos_inner_cone =
-          std::cos(glm::radians(std::max(0.0, angle - parameters.number("conedeltaangle", 5.0, 0.0, 90.0))));
-    } else if (kind == "goniometric" || kind == "projection") {
-      left_out_.replace("lights " + kind + ", by point lights", parameters.place() + ": lights of the kind " +
-                                                                    in_quotes(kind) + " are not supported");
-    } else if (kind != "point") {
-      parameters.fail("there is no kind of light " + in_quotes(kind));
-    }
-    if (light.kind != LightKind::point && light.direction == glm::dvec3(0.0)) {
-      parameters.fail("the light shines from a point to the same point");
-    }
-    left_out_.features["powers and illuminances of lights"] +=
-        parameters.find("power") != nullptr || parameters.find("illuminance") != nullptr ? 1U : 0U;
     Scene alone;
     alone.framed = true;
-    alone.lights.push_back(light);
+    alone.lights.push_back(*light);
     place(placement_of(state_.transform, text_), text_.place(), alone);
     if (scene_.lights.size() == most_lights) {
       text_.fail("the scene has more than " + std::to_string(most_lights) + " lights");
@@ -362,6 +370,7 @@ class Reader {
   }
 
   AnimatedScene finish() {
+    add_kept();
     if (scene_.triangles.empty() && scene_.quadrics.empty()) {
       file_.fail_empty();
     }
@@ -371,6 +380,7 @@ class Reader {
       use_camera();
     }
     set_view(scene_, file_.options());
+    note_instances(scene_);
     note_left_out(left_out_, scene_);
     note_degenerate(scene_);
     FileUse use;
@@ -386,6 +396,7 @@ class Reader {
   static constexpr std::size_t most_lights = 65536;
 
   const SourceFile& file_;
+  const Instances instances_;
   Scene scene_;
   LeftOut left_out_;
   Text text_;
@@ -393,8 +404,10 @@ class Reader {
   State state_;
   std::vector<State> states_;
   std::map<std::string, glm::dmat4> named_transforms_;
-  std::map<std::string, Object> objects_;
+  std::deque<Object> objects_;  // of which a later one may take the name of an earlier one
+  std::map<std::string, Object*> object_of_name_;
   Object* object_ = nullptr;  // that is being read
+  std::uint64_t copied_ = 0;  // triangles of objects
   std::optional<View> camera_;
   double film_width_ = 1280.0;
   double film_height_ = 720.0;
@@ -405,11 +418,18 @@ class Reader {
 
 AnimatedScene open_pbrt(const std::filesystem::path& path, const FileOptions& options,
                         const ImageDecoder& decode) {
-  const SourceFile file(path, options);
+  const auto read = [&](Instances instances) {
+    const SourceFile file(path, options);
+    try {
+      return pbrt::Reader(file, decode, instances).read();
+    } catch (const std::bad_alloc&) {
+      file.fail("there is not enough memory for its scene");
+    }
+  };
   try {
-    return pbrt::Reader(file, decode).read();
-  } catch (const std::bad_alloc&) {
-    file.fail("there is not enough memory for its scene");
+    return read(options.instances);
+  } catch (const pbrt::ManyCopies&) {
+    return read(Instances::kept);
   }
 }
 

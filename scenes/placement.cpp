@@ -4,14 +4,18 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "scenes/merged_instances.h"
 #include "scenes/vertex_values.h"
 #include "sim/error.h"
+#include "sim/key_error.h"
 
 namespace marti::scenes {
 
@@ -39,22 +43,24 @@ std::pair<double, double> cosine_and_sine(double degrees) {
 class Placing {
  public:
   Placing(const Placement& placement, const std::string& name, Scene& scene)
-      : placement_(placement), name_(name), scene_(scene) {}
+      : placement_(placement), name_(name), scene_(scene), fixed_(fixed_triangles(scene)) {}
 
   void all() {
     const glm::dmat3 of_normals = glm::transpose(glm::inverse(placement_.linear));
     const bool mirrors = glm::determinant(placement_.linear) < 0.0;
-    for (glm::dvec3& position : scene_.positions) {
-      position = moved(position);
-    }
-    for (glm::dvec3& normal : scene_.normals) {
-      normal = direction_of(of_normals * normal);
-    }
-    for (Triangle& triangle : scene_.triangles) {
-      if (mirrors) {
-        std::swap(triangle.vertex[1], triangle.vertex[2]);
+    const std::vector<bool> stay = vertices_of_instances();
+    for (std::size_t v = 0; v < scene_.positions.size(); ++v) {
+      if (stay.empty() || !stay[v]) {
+        scene_.positions[v] = moved(scene_.positions[v]);
+        if (!scene_.normals.empty()) {
+          scene_.normals[v] = direction_of(of_normals * scene_.normals[v]);
+        }
       }
     }
+    for (std::uint32_t t = 0; t < fixed_ && mirrors; ++t) {
+      std::swap(scene_.triangles[t].vertex[1], scene_.triangles[t].vertex[2]);
+    }
+    instances();
     quadrics();
     for (Light& light : scene_.lights) {
       light.position = moved(light.position);
@@ -73,6 +79,33 @@ class Placing {
       throw sim::UserError(name_ + ": its transform moves a point beyond 1e30");
     }
     return place;
+  }
+
+  /// Whether a vertex is of a mesh that instances move; empty without instances.
+  [[nodiscard]] std::vector<bool> vertices_of_instances() const {
+    std::vector<bool> of_instances(scene_.instances.empty() ? 0 : scene_.positions.size());
+    for (std::size_t t = fixed_; t < scene_.triangles.size(); ++t) {
+      for (const std::uint32_t vertex : scene_.triangles[t].vertex) {
+        of_instances[vertex] = true;
+      }
+    }
+    return of_instances;
+  }
+
+  void instances() {
+    for (std::size_t i = fixed_ > 0 ? 1 : 0; i < scene_.instances.size(); ++i) {
+      InstancePlace& place = scene_.instances[i];
+      place.linear = placement_.linear * place.linear;
+      place.shift = moved(place.shift);
+      if (const std::string why = why_not_kept(place); !why.empty()) {
+        throw sim::KeyError(
+            "structure.instances",
+            name_ + ": after its transform, an instance cannot be kept: " + why + "; set \"copied\"");
+      }
+    }
+    if (!scene_.instances.empty()) {
+      number_instances(scene_);
+    }
   }
 
   void quadrics() {
@@ -110,6 +143,7 @@ class Placing {
   const Placement& placement_;
   const std::string& name_;
   Scene& scene_;
+  const std::uint32_t fixed_;  // triangles
 };
 
 }  // namespace

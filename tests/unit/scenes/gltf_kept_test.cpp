@@ -1,9 +1,5 @@
 // Meshes that nodes of a glTF file share, kept once: what is kept, and that it is what copies are.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
+#include <cstdint>
 
 #include <gtest/gtest.h>
 
@@ -37,21 +33,6 @@ class KeptMeshesOfGltf : public ::testing::Test {
  private:
   marti::test::TemporaryDirectory directory_;
 };
-
-/// Triangles by their corners, in an order of their own.
-std::vector<std::array<double, 9>> sorted_triangles(const Scene& scene) {
-  std::vector<std::array<double, 9>> all;
-  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-    std::array<double, 9>& corners = all.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (int a = 0; a < 3; ++a) {
-        corners[3 * k + static_cast<std::size_t>(a)] = std::round(corner(scene, t, k)[a] * 1e9);
-      }
-    }
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
 
 TEST_F(KeptMeshesOfGltf, AreWhatCopiesAre) {
   const Scene kept = load(shared_square(), Instances::kept);
