@@ -35,8 +35,7 @@ run::RunResult as_run(processors::machine::MachineConfig machine, const DrivenRe
   run::RunResult result;
   result.machine = std::move(machine);
   result.timed = driven.machine;
-  result.totals = figures::totals_of(result.timed);
-  result.counts = figures::counts_of(result.machine, result.timed, result.totals);
+  result.counts = figures::counts_of(result.machine, result.timed);
   return result;
 }
 

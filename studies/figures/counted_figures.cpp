@@ -114,7 +114,7 @@ void add_memory(FigureParts& parts, const MachineConfig& machine, const MachineR
   parts.add("most_interconnect_busy",
             {"ps", "transfer time of the busiest cluster's interconnect", Merge::largest},
             only(totals.interconnect.has_value(), totals.most_interconnect_busy));
-  parts.add_all("interconnect_wait_", "waits for the interconnects", totals.interconnect_waits);
+  add_waits(parts, "interconnect_wait_", "waits for the interconnects", totals.interconnect_waits);
   const bool banks = totals.bank.has_value();
   parts.add("banks",
             {"1", "banks of all clusters; distributed memory: the nodes' memories; DRAM: channels",
@@ -123,7 +123,7 @@ void add_memory(FigureParts& parts, const MachineConfig& machine, const MachineR
   parts.add_all("bank_", "all banks (distributed memory: the nodes' memories; DRAM: channels)", totals.bank);
   parts.add("most_bank_busy", {"ps", "busy time of the busiest bank", Merge::largest},
             only(banks, totals.most_bank_busy));
-  parts.add_all("bank_wait_", "waits for the banks", totals.bank_waits);
+  add_waits(parts, "bank_wait_", "waits for the banks", totals.bank_waits);
   parts.add_all("dram_", "DRAM channels", totals.dram);
   parts.add_all("distributed_", "distributed memory", totals.distributed);
   parts.add_all("network_", "networks of all clusters", totals.network);
@@ -132,7 +132,7 @@ void add_memory(FigureParts& parts, const MachineConfig& machine, const MachineR
   parts.add("most_network_busy",
             {"ps", "time that messages held the links of the busiest cluster's network", Merge::largest},
             only(totals.network.has_value(), totals.most_network_busy));
-  parts.add_all("network_wait_", "waits for the networks' links", totals.network_waits);
+  add_waits(parts, "network_wait_", "waits for the networks' links", totals.network_waits);
 }
 
 void add_all(FigureParts& parts, const MachineConfig& machine, const MachineResult& result,
@@ -141,6 +141,7 @@ void add_all(FigureParts& parts, const MachineConfig& machine, const MachineResu
   add_references(parts, result);
   add_nodes(parts, result, totals);
   add_memory(parts, machine, result, totals);
+  add_bounds(parts, machine, result, totals);
   add_flow_figures(parts, machine, result, totals);
   add_build_figures(parts, result);
   add_cache_figures(parts, result, totals);

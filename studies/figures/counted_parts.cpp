@@ -1,9 +1,14 @@
 #include "studies/figures/counted_parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
 #include "memory/miss_classes.h"
+#include "processors/cost/accounting.h"
+#include "processors/node/memory_system.h"
+#include "processors/replay/bounds.h"
 #include "processors/walk/attribution.h"
 #include "sim/error.h"
 
@@ -11,6 +16,45 @@ namespace marti::studies::figures {
 
 using processors::machine::MachineConfig;
 using processors::replay::MachineResult;
+
+void add_waits(FigureParts& parts, const std::string& prefix, std::string_view whose,
+               const std::optional<memory::WaitStatistics>& waits) {
+  parts.add_all(prefix, whose, waits);
+  for (const int percent : {50, 95, 99}) {
+    parts.add(
+        prefix, "p" + std::to_string(percent),
+        {"ps", fmt::format("{}: {} % are not longer than this, at most an eighth too long", whose, percent),
+         Merge::one},
+        waits ? std::optional<Count>(waits->histogram.percentile(percent)) : std::nullopt);
+  }
+}
+
+void add_bounds(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,
+                const MachineTotals& totals) {
+  using memory::InterconnectKind;
+  using processors::cost::ActivityKind;
+  const processors::replay::FrameBounds bounds = processors::replay::frame_bounds(machine, r);
+  parts.add("bound", {"ps", "no frame in which node, link and bank have this work is shorter", Merge::one},
+            bounds.least());
+  const bool links = machine.placement == processors::machine::Placement::shared &&
+                     processors::node::has_links(machine) && totals.interconnect.has_value();
+  // A held bus waits for its bank. How long a DRAM bank takes depends on the accesses before.
+  const bool banks = links && totals.bank.has_value() && !machine.banks.dram &&
+                     !(machine.interconnect.kind == InterconnectKind::bus &&
+                       machine.interconnect.mode == memory::BusMode::held);
+  const processors::cost::TimeSums time = r.time();
+  const Count round =
+      processors::cost::sum_of_kinds({ActivityKind::computing, ActivityKind::memory, ActivityKind::delay},
+                                     [&](std::size_t i) { return time[i]; });
+  const Count queues =
+      links ? totals.interconnect->named("busy") + (banks ? totals.bank->named("busy") : 0) : 0;
+  parts.add("queue_round",
+            {"ps", "time of all nodes without queues and idling, or of all queues if that is longer",
+             Merge::one, Better::neither},
+            only(links, std::max(round, queues)));
+  parts.add("busiest_queue", {"ps", "busy time of the busiest link or bank that nodes wait for", Merge::one},
+            only(links, banks ? std::max(bounds.interconnect, totals.most_bank_busy) : bounds.interconnect));
+}
 
 void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const MachineResult& r,
                       const MachineTotals& totals) {
@@ -71,7 +115,8 @@ void add_build_figures(FigureParts& parts, const MachineResult& r) {
 
 void add_cache_figures(FigureParts& parts, const MachineResult& r, const MachineTotals& totals) {
   parts.add_all("l2_", "second level", only(!r.l2.caches.empty(), r.l2.counters()));
-  parts.add_all("l2_wait_", "waits of hits for lines on their way to a shared second level", totals.l2_waits);
+  add_waits(parts, "l2_wait_", "waits of hits for lines on their way to a shared second level",
+            totals.l2_waits);
   parts.add_all("simt_", "SIMT nodes", only(!r.simt.nodes.empty(), r.simt.counts()));
   parts.add_all("contexts_", "all nodes", only(!r.contexts.nodes.empty(), r.contexts.counts()));
 }

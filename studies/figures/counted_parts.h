@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "processors/replay/replay.h"
 #include "studies/figures/figure_parts.h"
@@ -15,6 +17,12 @@ std::optional<Value> only(bool there, Value value) {
   return there ? std::optional(value) : std::nullopt;
 }
 
+/// Of the waits at queues: count, sum, longest and percentiles.
+void add_waits(FigureParts& parts, const std::string& prefix, std::string_view whose,
+               const std::optional<memory::WaitStatistics>& waits);
+/// How short the frame can be at best, and what says from how many nodes on its busiest queue is full.
+void add_bounds(FigureParts& parts, const processors::machine::MachineConfig& machine,
+                const processors::replay::MachineResult& result, const MachineTotals& totals);
 /// Of rays that move from node to node.
 void add_flow_figures(FigureParts& parts, const processors::machine::MachineConfig& machine,
                       const processors::replay::MachineResult& result, const MachineTotals& totals);

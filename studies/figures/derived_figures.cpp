@@ -99,6 +99,8 @@ void add_speed(std::vector<FigureEntry>& all) {
           (base("end") * (own("nodes") - base("nodes"))));
   add("times_faster", "how many times as fast as the machine that all are compared with", Better::higher,
       Formula("end", Whose::compared) / own("end"));
+  add("saturation", "nodes of a cluster from which on its busiest queue is full", Better::higher,
+      own("queue_round") / (own("clusters") * own("busiest_queue")));
   constexpr std::array<std::string_view, loss_names.size()> lost_to = {
       "more work: steps, and misses that meet no queue", "waits for interconnect and banks",
       "waits for work, of nodes that had some",

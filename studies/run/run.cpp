@@ -245,8 +245,7 @@ std::shared_ptr<const processors::walk::StrippedLog> time_frame(const keys::Reco
       std::rethrow_exception(fault);
     }
   }
-  result.totals = figures::totals_of(result.timed);
-  result.counts = figures::counts_of(result.machine, result.timed, result.totals);
+  result.counts = figures::counts_of(result.machine, result.timed);
   result.one_node_counts =
       figures::counts_of(processors::machine::one_node_of(result.machine), result.one_node);
   result.bounds = processors::replay::frame_bounds(result.machine, result.timed);

@@ -34,7 +34,6 @@ struct RunResult {
   FunctionalRun functional;
   processors::replay::MachineResult timed;
   processors::replay::MachineResult one_node;  ///< the same machine with one cluster of one node
-  figures::MachineTotals totals;               ///< of the timed machine
   figures::Counts counts;                      ///< of the timed machine
   figures::Counts one_node_counts;
   std::optional<helps::WhatHelps> helps;  ///< empty: not asked for

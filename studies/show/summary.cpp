@@ -164,14 +164,13 @@ void time_lines(Lines out, const run::RunResult& r) {
 }
 
 // "mean wait 0.1 us, ..." at a queue, "bank" for example.
-std::string waiting(const run::RunResult& r, const std::string& queue,
-                    const std::optional<memory::WaitStatistics>& waits) {
+std::string waiting(const run::RunResult& r, const std::string& queue) {
   const std::optional<double> mean = r.figure("mean_" + queue + "_wait");
   if (!mean) {
     return "no transactions";
   }
   return fmt::format("mean wait {}, 95 % below {}, longest {}", tables::computed_seconds(*mean),
-                     tables::seconds(waits->histogram.percentile(95.0).value_or(0)),
+                     tables::seconds(r.count(queue + "_wait_p95")),
                      tables::seconds(r.count(queue + "_wait_max")));
 }
 
@@ -186,7 +185,7 @@ void distribution_lines(Lines out, const run::RunResult& r) {
   if (const std::optional<double> used = r.figure("interconnect_utilisation")) {
     fmt::format_to(out, "  {:<12}{} of its links busy, {}\n",
                    memory::network_kind_names[static_cast<std::size_t>(r.machine.network.kind)],
-                   tables::rough_percent(*used), waiting(r, "network", r.totals.network_waits));
+                   tables::rough_percent(*used), waiting(r, "network"));
     fmt::format_to(out, "{}", network_bandwidth_line(r));
   }
 }
@@ -233,7 +232,7 @@ void memory_lines(Lines out, const run::RunResult& r) {
   } else {
     fmt::format_to(out, "\n{:<14}{} busy, {}, {} moved\n", figures::interconnect_name(r.machine),
                    tables::rough_percent(r.figure("interconnect_utilisation").value_or(0.0)),
-                   waiting(r, "interconnect", r.totals.interconnect_waits), tables::bytes(moved));
+                   waiting(r, "interconnect"), tables::bytes(moved));
     fmt::format_to(out, "{}", interconnect_bandwidth_line(r));
   }
   const bool dram = r.machine.banks.dram.has_value() && !distributed;
@@ -242,8 +241,7 @@ void memory_lines(Lines out, const run::RunResult& r) {
                  : dram      ? "DRAM channels"
                              : "banks",
                  tables::rough_percent(r.figure("mean_bank_utilisation").value_or(0.0)),
-                 tables::rough_percent(r.figure("bank_utilisation").value_or(0.0)),
-                 waiting(r, "bank", r.totals.bank_waits));
+                 tables::rough_percent(r.figure("bank_utilisation").value_or(0.0)), waiting(r, "bank"));
   if (dram) {
     dram_lines(out, r);
   }

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
-#include <utility>
 
 #include "memory/record_kind.h"
 #include "processors/cost/accounting.h"
@@ -23,9 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double ps_a_ms = 1e9;
 constexpr double ps_a_us = 1e6;
-constexpr double fj_a_mj = 1e12;
+constexpr std::string_view price =
+    "price";  // the cost, or the number of nodes: the only field that is no figure
 
 /// A figure of every point that the page has.
 struct ExplorerField {
@@ -38,14 +37,53 @@ struct ExplorerField {
   std::string title{};  // for people; empty: the name in words
 };
 
-// How a figure of the catalogue is shown that has no entry of its own.
 ExplorerField field_of(const std::string& name) {
   const std::string& unit = figures::figure_named(name).unit;
   if (unit == "ps") {
-    return {name, "ms", ps_a_ms};
+    return {name, "ms", 1e9};
   }
-  return unit == "fJ" ? ExplorerField{name, "mJ", fj_a_mj}
+  return unit == "fJ" ? ExplorerField{name, "mJ", 1e12}
                       : ExplorerField{name, unit == "fraction" || unit == "text" ? "1" : unit};
+}
+
+// What the page shows of each point, whatever else it has: for charts, for the table, for the answer.
+std::vector<ExplorerField> first_fields() {
+  std::vector<ExplorerField> fields;
+  const auto add = [&fields](const std::string& name, const std::string& title = {}) {
+    fields.push_back(name == price ? ExplorerField{name} : field_of(name));
+    fields.back().title = title;
+  };
+  const auto add_main = [&](const std::string& name, bool exact, const std::string& title = {}) {
+    add(name, title);
+    fields.back().main = true;
+    fields.back().exact = exact;
+  };
+  add_main("end", true, "frame time");
+  add_main("speed_up", true, "speed-up");
+  add_main(std::string(price), true);
+  add_main("efficiency", true);
+  add("times_faster");
+  add_main("energy", true);
+  add_main("hit_ratio", false);
+  for (const std::string_view kind : memory::record_kind_names) {
+    add("hit_ratio_" + std::string(kind));
+  }
+  for (const std::string part : {"interconnect", "bank", "network"}) {
+    add_main(part + "_utilisation", false, part + " busy");
+  }
+  for (const std::string wait : {"interconnect_wait", "bank_wait"}) {
+    for (const std::string& name : {"mean_" + wait, wait + "_p50", wait + "_p95", wait + "_p99"}) {
+      add(name);
+      fields.back().unit = "us";
+      fields.back().divisor = ps_a_us;
+    }
+  }
+  for (const std::string_view activity : processors::cost::activity_names) {
+    add("share_" + std::string(activity));
+  }
+  add("bound", "asymptotic bound");
+  add("saturation");
+  return fields;
 }
 
 // Whether the points' values of a figure are not all equal.
@@ -59,30 +97,7 @@ bool varies(const ReportPoints& sweep, const std::string& name) {
 // The fields that at least one point has: those that charts and the table need, then all figures of the
 // points that tell machines apart.
 std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
-  std::vector<ExplorerField> fields = {{"end", "ms", ps_a_ms, true, true, "frame time"},
-                                       {"speed_up", "1", 1.0, true, true, "speed-up"},
-                                       {"price", "1", 1.0, true, true, sweep.priced ? "price" : "nodes"},
-                                       {"efficiency", "1", 1.0, true, true},
-                                       {"times_faster"},
-                                       {"energy", "mJ", 1.0, true, true},
-                                       {"hit_ratio", "1", 1.0, false, true}};
-  for (const std::string_view kind : memory::record_kind_names) {
-    fields.push_back({"hit_ratio_" + std::string(kind)});
-  }
-  for (const char* const part : {"interconnect", "bank", "network"}) {
-    fields.push_back(
-        {part + std::string("_utilisation"), "1", 1.0, false, true, part + std::string(" busy")});
-  }
-  for (const std::string wait : {"interconnect_wait", "bank_wait"}) {
-    for (const std::string& name : {"mean_" + wait, wait + "_p50", wait + "_p95", wait + "_p99"}) {
-      fields.push_back({name, "us", ps_a_us});
-    }
-  }
-  for (const std::string_view activity : processors::cost::activity_names) {
-    fields.push_back({"share_" + std::string(activity)});
-  }
-  fields.push_back({"bound", "ms", ps_a_ms, false, false, "asymptotic bound"});
-  fields.push_back({"saturation", "1", 1.0, false, false, "saturation"});
+  std::vector<ExplorerField> fields = first_fields();
   std::erase_if(fields, [&](const ExplorerField& field) {
     const bool share = field.name.starts_with("share_");  // what nodes never do needs no column
     return std::ranges::none_of(sweep.points, [&](const ReportPoint& point) {
@@ -103,51 +118,21 @@ std::vector<ExplorerField> explorer_fields(const ReportPoints& sweep) {
   return fields;
 }
 
-// Prices, bounds and percentiles are not in the catalogue of figures; the report itself works them out.
-constexpr std::pair<std::string_view, std::string_view> own_meanings[] = {
-    {"bound", "no frame with these counters is shorter"},
-    {"saturation", "nodes of a cluster from which on its busiest queue is full"}};
-constexpr std::string_view percentile_part = "_wait_p";
-
-std::string_view own_meaning_of(std::string_view name) {
-  for (const auto& [own, meaning] : own_meanings) {
-    if (own == name) {
-      return meaning;
-    }
-  }
-  return {};
-}
-
-bool is_catalogued(const ExplorerField& field) {
-  return field.name != "price" && own_meaning_of(field.name).empty() &&
-         field.name.find(percentile_part) == std::string::npos;
-}
-
-// Parts of a whole, which people read in percent.
-bool is_share(const ExplorerField& field) {
-  return is_catalogued(field) && figures::figure_named(field.name).unit == "fraction";
-}
-
-std::string meaning_of(const ExplorerField& field, const ReportPoints& sweep) {
-  if (is_catalogued(field)) {
-    return figures::figure_named(field.name).description;
-  }
-  if (const std::string_view own = own_meaning_of(field.name); !own.empty()) {
-    return std::string(own);
-  }
-  if (field.name == "price") {
-    return sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
-  }
-  return "percentile: the upper end of its bucket of the histogram, at most an eighth too long";
-}
-
 Json field_json(const ExplorerField& field, const ReportPoints& sweep) {
+  const bool is_price = field.name == price;
   Json json = {{"name", field.name},
                {"unit", field.unit},
-               {"title", field.title.empty() ? words(field.name) : field.title},
-               {"meaning", meaning_of(field, sweep)}};
-  if (is_share(field)) {
-    json["percent"] = true;
+               {"title", !field.title.empty()        ? field.title
+                         : is_price && !sweep.priced ? "nodes"
+                                                     : words(field.name)}};
+  if (is_price) {
+    json["meaning"] = sweep.priced ? "cost by [prices]" : "number of nodes, as all costs are equal";
+  } else {
+    const figures::FigureEntry& figure = figures::figure_named(field.name);
+    json["meaning"] = figure.description;
+    if (figure.unit == "fraction") {  // a part of a whole, which people read in percent
+      json["percent"] = true;
+    }
   }
   if (field.main) {
     json["main"] = true;
@@ -208,6 +193,12 @@ Json channel_of(const ReportAxis& axis) {
 }
 
 }  // namespace
+
+std::vector<std::string> first_figures() {
+  std::vector<std::string> names = sim::mapped(first_fields(), &ExplorerField::name);
+  std::erase(names, price);
+  return names;
+}
 
 Json explorer_json(const ReportPoints& sweep, const Chosen& chosen, std::optional<std::size_t> axis) {
   Json json = {{"axis", axis ? Json(*axis) : Json()},

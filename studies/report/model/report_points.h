@@ -38,8 +38,6 @@ struct ReportPoint {
   std::size_t frame = 0;                               ///< which of the sweep's frames it renders, from 0
   std::string advice;                                  ///< what would help it, measured; may be empty
   std::optional<double> noise;                         ///< of its frame time (sweep::Advice::noise)
-  bool links_are_queues = false;                       ///< its interconnect is a bus or a crossbar,
-  bool banks_are_queues = false;                       ///< and it is not held while a bank works
 
   /// 0 when the point has none of this name.
   [[nodiscard]] double figure(std::string_view name) const;

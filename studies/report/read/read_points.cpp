@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
-#include "processors/cost/accounting.h"
 #include "sim/error.h"
 #include "sim/mapped.h"
 #include "studies/report/model/chart_library.h"
-#include "studies/report/model/point_bounds.h"
+#include "studies/report/model/explorer.h"
 #include "studies/report/model/sweep_answer.h"
 #include "studies/sweep/plan/axis_text.h"
 #include "studies/sweep/store/axis_order.h"
@@ -26,52 +26,14 @@ constexpr std::size_t most_points = 20'000;
 // page's own charts and tables need.
 constexpr std::size_t most_points_with_all = 2'000;
 
-constexpr std::string_view counters[] = {"end",
-                                         "cost",
-                                         "build_start_up_wait",
-                                         "most_interconnect_busy",
-                                         "most_bank_busy",
-                                         "nodes",
-                                         "clusters",
-                                         "packets",
-                                         "database_bytes",
-                                         "events",
-                                         "hits",
-                                         "misses",
-                                         "interconnect_reads",
-                                         "interconnect_busy",
-                                         "interconnect_links",
-                                         "interconnect_bytes",
-                                         "banks",
-                                         "bank_busy",
-                                         "speed_up",
-                                         "efficiency",
-                                         "times_faster",
-                                         "hit_ratio",
-                                         "l2_hit_ratio",
-                                         "interconnect_utilisation",
-                                         "bank_utilisation",
-                                         "network_utilisation",
-                                         "mean_interconnect_wait",
-                                         "mean_bank_wait",
-                                         "finish_balance",
-                                         "energy"};
-
-constexpr std::string_view waits[] = {"interconnect_wait", "bank_wait"};
-
 std::vector<std::string> wanted_figures(const sweep::SweepReader& reader) {
   std::vector<std::string> names = reader.figures();
   if (reader.point_count() <= most_points_with_all) {
     return names;
   }
-  std::set<std::string, std::less<>> wanted(std::begin(counters), std::end(counters));
-  for (const std::string_view activity : processors::cost::activity_names) {
-    wanted.insert("time_" + std::string(activity));
-    wanted.insert("share_" + std::string(activity));
-  }
-  for (const std::string_view kind : memory::record_kind_names) {
-    wanted.insert("hit_ratio_" + std::string(kind));
-  }
+  const std::vector<std::string> first = first_figures();
+  std::set<std::string, std::less<>> wanted(first.begin(), first.end());
+  wanted.insert("nodes");  // what a machine costs if nothing has a price
   for (const DescribedChart& chart : described_charts("sweep")) {
     for (const nlohmann::ordered_json& field :
          chart.meta.at("live").value("fields", nlohmann::ordered_json::array())) {
@@ -91,29 +53,6 @@ void check_axes(const std::filesystem::path& store, const ReportPoints& sweep) {
             fmt::format("{}: axis {} has two values that are the same number with the digits that a page can "
                         "show, {}; leave one of them out",
                         store.string(), axis.name, axis.texts[value]));
-      }
-    }
-  }
-}
-
-// The upper bound of the bucket that the percentile lies in: waits are not above it.
-void add_percentiles(const sweep::SweepRow& row, ReportPoint& point) {
-  for (const sweep::SweepHistogram& histogram : row.histograms) {
-    if (std::find(std::begin(waits), std::end(waits), histogram.what) == std::end(waits)) {
-      continue;
-    }
-    double all = 0.0;
-    for (const sweep::SweepHistogram::Bucket& bucket : histogram.buckets) {
-      all += static_cast<double>(bucket.count);
-    }
-    for (const int percent : {50, 95, 99}) {
-      double below = 0.0;
-      for (const sweep::SweepHistogram::Bucket& bucket : histogram.buckets) {
-        below += static_cast<double>(bucket.count);
-        if (below >= all * percent / 100.0) {
-          point.figures[fmt::format("{}_p{}", histogram.what, percent)] = static_cast<double>(bucket.highest);
-          break;
-        }
       }
     }
   }
@@ -139,22 +78,12 @@ class Frames {
   std::map<std::string, std::size_t> numbers_;
 };
 
-// Collects the settings that all machines of the sweep share, and notes for each point what its queues are.
+// The settings that all machines of the sweep share.
 class Settings {
  public:
-  void add(ReportPoint& point, const std::map<std::string, std::string>& by_key) {
-    const auto value = [&](const char* key) {
-      const auto at = by_key.find(key);
-      return at == by_key.end() ? std::string() : at->second;
-    };
-    const bool bus = value("interconnect.kind") == "\"bus\"";
-    const bool local = value("database.placement") != "\"shared\"";
-    point.links_are_queues = !local && (bus || value("interconnect.kind") == "\"crossbar\"");
-    point.banks_are_queues = point.links_are_queues && value("memory.model") != "\"dram\"" &&
-                             !(bus && value("interconnect.mode") == "\"held\"");
-    if (!begun_) {
+  void add(const std::map<std::string, std::string>& by_key) {
+    if (!std::exchange(begun_, true)) {
       shared_ = by_key;
-      begun_ = true;
       return;
     }
     std::erase_if(shared_, [&](const auto& setting) {
@@ -235,7 +164,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
                       store.string(), stored.ordinal));
     }
     const std::vector<std::pair<std::string, std::string>> own = reader.settings(stored.machine);
-    settings.add(point, {own.begin(), own.end()});
+    settings.add({own.begin(), own.end()});
     sweep.points.push_back(std::move(point));
     values.push_back(stored.values);
   });
@@ -245,14 +174,7 @@ ReportPoints read_report_points(const std::filesystem::path& store) {
         ": no point of the sweep has been timed yet; run `marti sweep` with the same -o first");
   }
   for (ReportPoint& point : sweep.points) {
-    if (const std::optional<sweep::SweepRow> row = reader.read_result(point.machine)) {
-      add_percentiles(*row, point);
-    }
     point.frame = frames.number_of(point.machine);
-    point.figures["bound"] = bound_of(point);
-    if (const std::optional<double> nodes = saturation_of(point)) {
-      point.figures["saturation"] = *nodes;
-    }
   }
   sweep.frames = frames.count();
   sweep.answers = sweep::answers_of(reader);

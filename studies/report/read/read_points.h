@@ -7,13 +7,10 @@
 
 namespace marti::studies::report {
 
-/// Figures of a point: the counters that reports use, what the store's view `summary` derives, and
-/// "hit_ratio_node", "hit_ratio_list", "hit_ratio_primitive", "hit_ratio_material", "interconnect_wait_p50"
-/// and the like (p50, p95, p99; ps) of "interconnect_wait" and "bank_wait", and "price" (the cost by
-/// [prices], or the number of nodes where all costs are equal). Times are from 1 ps to 2^62 ps, other figures
-/// that the store holds from 0 to 2^62, and no two points have the same values. Throws UserError when the
-/// store cannot be read, holds no timed point, more than a page can show, or a point that is not so, which it
-/// names by its ordinal.
+/// Figures of a point are those of the catalogue, and "price" (the cost by [prices], or the number of nodes
+/// where all costs are equal). Times are from 1 ps to 2^62 ps, other figures that the store holds from 0 to
+/// 2^62, and no two points have the same values. Throws UserError when the store cannot be read, holds no
+/// timed point, more than a page can show, or a point that is not so, which it names by its ordinal.
 [[nodiscard]] ReportPoints read_report_points(const std::filesystem::path& store);
 
 }  // namespace marti::studies::report

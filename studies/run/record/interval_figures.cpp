@@ -30,8 +30,8 @@ bool adds_up(const FigureEntry& entry) {
 // Whether a figure says something of an interval that it does not say of all. Shares of the nodes' times are
 // told by the pieces of their time, too.
 bool is_of_intervals(const FigureEntry& derived) {
-  return derived.name != "area" && derived.name != "energy_delay" && !derived.name.starts_with("share_") &&
-         !derived.formula->is_relative();
+  return derived.name != "area" && derived.name != "energy_delay" && derived.name != "saturation" &&
+         !derived.name.starts_with("share_") && !derived.formula->is_relative();
 }
 
 }  // namespace

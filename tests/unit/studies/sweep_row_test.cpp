@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
+#include "processors/replay/bounds.h"
 #include "processors/replay/replay.h"
 #include "sim/error.h"
+#include "studies/figures/derived_figures.h"
 #include "tests/support/random_flow.h"
 #include "tests/support/random_machine.h"
 #include "tests/unit/studies/sweep_parts.h"
@@ -102,6 +105,25 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheirMachine, (std::uint64_t seed)) {
   RC_ASSERT(value("steps_tests") == tests);
 }
 
+// Of one bus the saturation is that of the closed network by which a frame time is predicted.
+RC_GTEST_PROP(SweepRows, SaturateWhereTheNetworkDoes, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const processors::program::WorkLog log = test::random_tree_log(random, 7, 5);
+  MachineConfig machine = any_machine(random);
+  machine.clusters = 1;
+  machine.interconnect.kind = memory::InterconnectKind::bus;
+  const MachineResult result = processors::replay::replay(log, machine);
+  const auto prediction = processors::replay::predict(machine, result);
+  if (!prediction || machine.placement != processors::machine::Placement::shared) {
+    RC_DISCARD("no network");
+  }
+  const auto saturation = figure_of(machine, result, "saturation");
+  RC_ASSERT(saturation.has_value() == prediction->network.saturation().has_value());
+  if (saturation) {
+    RC_ASSERT(std::abs(*saturation / *prediction->network.saturation() - 1.0) < 1e-9);
+  }
+}
+
 RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   test::Random random(seed);
   const processors::program::WorkLog log = test::random_tree_log(random, 7, 5);
@@ -145,6 +167,15 @@ RC_GTEST_PROP(SweepRows, HoldTheSumsOfTheMemory, (std::uint64_t seed)) {
   RC_ASSERT(values.at("banks") == (banks == 0 ? std::nullopt : std::optional(banks)));
   RC_ASSERT(values.at("most_bank_busy") == (banks == 0 ? std::nullopt : std::optional(busiest)));
   RC_ASSERT(waits_in(row, "bank_wait") == bank_waits);
+  RC_ASSERT(values.at("bound").value() <= result.end);
+  for (const std::string queue : {"interconnect", "bank", "network", "l2"}) {
+    std::optional<Count> before;
+    for (const std::string what : {"p50", "p95", "p99", "max"}) {
+      const std::optional<Count> wait = values.at(queue + "_wait_" + what);
+      RC_ASSERT((!before || *before <= wait.value()));
+      before = wait;
+    }
+  }
   RC_ASSERT(values.at("network_bytes") == (networks == 0 ? std::nullopt : std::optional(bytes)));
   RC_ASSERT(waits_in(row, "network_wait") == values.at("network_wait_count").value_or(0));
   RC_ASSERT(waits_in(row, "l2_wait") == values.at("l2_wait_count").value_or(0));
