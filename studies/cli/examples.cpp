@@ -16,7 +16,7 @@ struct Examples {
   std::array<std::string_view, 2> calls;
 };
 
-constexpr std::array<Examples, 27> table = {{
+constexpr std::array<Examples, 26> table = {{
     {"run",
      {"marti run configs/marti.toml",
       "marti run configs/marti.toml --set machine.nodes=64 --set scene.source=mine.glb -o out"}},
@@ -24,7 +24,7 @@ constexpr std::array<Examples, 27> table = {{
      {"marti explore configs/marti.toml --set image.width=256 --set image.height=256",
       "marti explore mine.toml --port 8080 --no-browser"}},
     {"study",
-     {"marti study schemes configs/schemes.toml -o out/schemes", "marti study stability configs/marti.toml"}},
+     {"marti study paper configs/paper.toml -o out/paper", "marti study stability configs/marti.toml"}},
     {"study operations",
      {"marti study operations", "marti study operations --set scene.source=gears:4 -o out/operations"}},
     {"study paper",
@@ -33,9 +33,6 @@ constexpr std::array<Examples, 27> table = {{
     {"study frames",
      {"marti study frames configs/animation.toml -o out/frames",
       "marti study frames configs/animation.toml --set frames.count=4 -o out/frames"}},
-    {"study schemes",
-     {"marti study schemes configs/schemes.toml -o out/schemes",
-      "marti study schemes configs/schemes.toml --set 'schemes.nodes=[1,4,16]' -o out/schemes"}},
     {"study error",
      {"marti study error configs/error.toml -o out/error",
       "marti study error configs/error.toml --set image.integrator=path --set scene.source=room:8 -o "

@@ -60,8 +60,6 @@
 #include "studies/run/run_result.h"
 #include "studies/run/saved_frame.h"
 #include "studies/run/trace/trace.h"
-#include "studies/schemes/schemes.h"
-#include "studies/schemes/schemes_keys.h"
 #include "studies/show/output.h"
 #include "studies/show/result_json.h"
 #include "studies/show/summary.h"
@@ -330,8 +328,6 @@ void add_study_commands(CLI::App& app, StudyArguments& arguments, suite::SuiteAr
   add("paper", "The tables and figures of the paper of 1992", true, paper::paper_schema, paper::run_paper);
   add("frames", "The cycle \"build, render\" of each frame of an animated scene", true, run::run_schema,
       frames::run_frames);
-  add("schemes", "Parallel schemes on one scene: how they grow, and what limits them", true,
-      schemes::schemes_schema, schemes::run_schemes);
   add("error", "Cheaper answers than exact ones: how wrong they are, and how much cheaper", true,
       error::error_schema, error::run_error);
   add("stability", "Extremes of a scene and a machine, each against an oracle; exit 1 if one fails", false,

@@ -17,7 +17,6 @@
 #include "studies/keys/combination_table.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
-#include "studies/schemes/schemes_keys.h"
 #include "studies/show/lists.h"
 #include "studies/stability/stability.h"
 #include "studies/sweep/plan/sweep_keys.h"
@@ -27,7 +26,6 @@ namespace marti::studies::cli {
 sim::Schema all_keys() {
   sim::Schema schema = run::run_schema();
   paper::declare_paper_keys(schema);
-  schemes::declare_schemes_keys(schema);
   error::declare_error_keys(schema);
   stability::declare_stability_keys(schema);
   sweep::declare_sweep_keys(schema);

@@ -7,10 +7,12 @@
 
 #include "memory/miss_classes.h"
 #include "processors/cost/accounting.h"
+#include "processors/flow/pipeline/stages.h"
 #include "processors/node/memory_system.h"
 #include "processors/replay/bounds.h"
 #include "processors/walk/attribution.h"
 #include "sim/error.h"
+#include "studies/figures/flow_figures.h"
 
 namespace marti::studies::figures {
 
@@ -93,6 +95,13 @@ void add_flow_figures(FigureParts& parts, const MachineConfig& machine, const Ma
             {"ps", "space: computing of one node for the pre-pass of sampled regions, before the frame",
              Merge::one},
             only(space, flow.sampling_work));
+  const bool pipeline = there && machine.scheme == processors::machine::Scheme::pipeline;
+  const FlowFigures figures = pipeline ? flow_figures(machine, r) : FlowFigures();
+  for (std::size_t stage = 0; stage < processors::machine::pipeline_stages; ++stage) {
+    parts.add("stage_", std::string(processors::flow::stage_names[stage]) + "_busy",
+              {"ps", "pipeline: time in which the nodes of this stage worked", Merge::one, Better::neither},
+              pipeline ? std::optional(figures.stages[stage].work) : std::nullopt);
+  }
 }
 
 void add_build_figures(FigureParts& parts, const MachineResult& r) {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "processors/flow/pipeline/stages.h"
-#include "studies/figures/derived_figures.h"
 
 namespace marti::studies::figures {
 
@@ -24,6 +23,7 @@ void add_node(const MachineResult& result, std::size_t node, StageLoad& load) {
   const auto end = static_cast<double>(result.end);
   const sim::Ticks waits = of(Activity::message_wait) + of(Activity::queue_full_wait) +
                            of(Activity::dispatch_wait) + of(Activity::idle);
+  load.work += result.end - waits;
   const double busy = share(static_cast<double>(result.end - waits), end);
   ++load.nodes;
   load.busy += busy;
@@ -90,36 +90,6 @@ FlowFigures flow_figures(const MachineConfig& machine, const MachineResult& resu
     figures.host_link = host_link(machine, result) / ways;
   }
   return figures;
-}
-
-Bottleneck bottleneck_of(const MachineConfig& machine, const MachineResult& result) {
-  const FlowFigures figures = flow_figures(machine, result);
-  if (figures.host >= full) {
-    return Bottleneck::host;
-  }
-  const double network = figure_of(machine, result, "network_utilisation").value_or(0.0);
-  return std::max(figures.host_link, network) >= full ? Bottleneck::network : Bottleneck::none;
-}
-
-FlowWaits flow_waits(const MachineConfig& machine, const MachineResult& result) {
-  FlowWaits waits;
-  if (machine.scheme == Scheme::image) {
-    return waits;
-  }
-  const processors::cost::TimeSums time = result.time();
-  const auto of = [&](Activity activity) {
-    return static_cast<double>(time[static_cast<std::size_t>(activity)]);
-  };
-  const FlowFigures figures = flow_figures(machine, result);
-  const bool busy =
-      figures.stages.empty() ? figures.all.busiest >= always_busy : figures.slowest().busy >= always_busy;
-  if (busy) {
-    waits.slowest = of(Activity::queue_full_wait) + of(Activity::message_wait);
-  } else {
-    waits.queues = of(Activity::queue_full_wait);
-    waits.messages = of(Activity::message_wait);
-  }
-  return waits;
 }
 
 }  // namespace marti::studies::figures

@@ -1,5 +1,5 @@
-// What the catalogue does not have of the schemes in which rays move: how busy stages, nodes and the host
-// are, and what their waits are due to.
+// What the catalogue does not have of the schemes in which rays move: how busy stages, nodes and the
+// host are.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,7 @@ namespace marti::studies::figures {
 struct StageLoad {
   std::string name;  ///< "search", "nearest", "shade"; "nodes" where there are no stages
   std::uint64_t nodes = 0;
+  sim::Sum work = 0;        ///< time of all of them without waits for rays or queues and without idling
   double busy = 0.0;        ///< mean share of the frame without waits for rays or queues and without idling
   double busiest = 0.0;     ///< that share for the busiest node
   double queue_full = 0.0;  ///< mean share of the frame in which a node waits for a full queue
@@ -38,27 +39,5 @@ struct FlowFigures {
 /// `result` must be of a scheme in which rays move.
 [[nodiscard]] FlowFigures flow_figures(const processors::machine::MachineConfig& machine,
                                        const processors::replay::MachineResult& result);
-
-/// What the nodes' waits for rays and for queues are due to: the part that is always busy, if there is one
-/// (the slowest stage; without stages the busiest node), else full queues and messages. Ticks; all are 0 with
-/// the image scheme.
-struct FlowWaits {
-  double slowest = 0.0;
-  double queues = 0.0;
-  double messages = 0.0;
-};
-[[nodiscard]] FlowWaits flow_waits(const processors::machine::MachineConfig& machine,
-                                   const processors::replay::MachineResult& result);
-
-/// What else may keep all nodes waiting where rays move: a host that sends or collects as fast as it can, or
-/// a network whose links are full.
-enum class Bottleneck : std::uint8_t { none, host, network };
-[[nodiscard]] Bottleneck bottleneck_of(const processors::machine::MachineConfig& machine,
-                                       const processors::replay::MachineResult& result);
-
-/// A shared resource that is busy for this share of the frame or longer counts as full.
-inline constexpr double full = 0.9;
-/// Above this share of the frame a stage or a node counts as always busy.
-inline constexpr double always_busy = 0.8;
 
 }  // namespace marti::studies::figures

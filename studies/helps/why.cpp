@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "studies/figures/derived_figures.h"
-#include "studies/figures/find_limit.h"
 #include "studies/figures/flow_figures.h"
+#include "studies/figures/memory_names.h"
 #include "studies/helps/verdict.h"
 
 namespace marti::studies::helps {

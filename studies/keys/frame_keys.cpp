@@ -524,11 +524,11 @@ FrameConfig read_frame(sim::Config& config, FrameUse use) {
       config.fail("image.integrator", "the study is of images; rays of a file are for runs and sweeps");
     }
     read_rays(config, frame);
-  } else if (use != FrameUse::timing && use != FrameUse::frames && use != FrameUse::schemes &&
+  } else if (use != FrameUse::timing && use != FrameUse::frames &&
              processors::program::sends_any_hit_rays(frame.render.integrator)) {
     config.fail("image.integrator",
                 "the study is of whole images; \"shadow\" and \"occlusion\" are for runs, "
-                "sweeps, and the studies of frames and schemes");
+                "sweeps, and the study of frames");
   } else {
     read_image(config, frame);
   }

@@ -19,7 +19,7 @@ struct LoggedFrame {
 };
 
 /// What a frame is read for. Machines can be timed on a log; all else needs the scene itself.
-enum class FrameUse : std::uint8_t { timing, operations, paper, frames, schemes, error, stability };
+enum class FrameUse : std::uint8_t { timing, operations, paper, frames, error, stability };
 
 /// The log that `scene.log` names; null where it is not given. Gives each key that decides a scene, a
 /// structure or an image the value that the log was made with. Throws UserError, naming file, line and key,

@@ -10,7 +10,7 @@
 namespace marti::studies::keys {
 
 void declare_sections_of_other_commands(sim::Schema& schema) {
-  for (const std::string_view study : {"paper", "schemes", "error", "stability"}) {
+  for (const std::string_view study : {"paper", "error", "stability"}) {
     schema.elsewhere(study, "marti study " + std::string(study));
   }
   schema.elsewhere("suite", "marti study suite");

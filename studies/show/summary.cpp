@@ -8,7 +8,7 @@
 
 #include "scenes/open.h"
 #include "sim/statistics.h"
-#include "studies/figures/find_limit.h"
+#include "studies/figures/memory_names.h"
 #include "studies/run/plan/plan_output.h"
 #include "studies/show/result_parts.h"
 #include "studies/show/text_columns.h"

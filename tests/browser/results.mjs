@@ -20,9 +20,9 @@ const commands = {
   ],
   sweep: ["sweep", join(configs, "sweep-small.toml")],
   study: [
-    ...["study", "schemes", join(configs, "schemes.toml")],
-    ...set(["scene.source=tetra:3", "image.width=24", "image.height=16", "schemes.nodes=[1,4,9]"]),
-    ...set(["schemes.cell_levels=[2,4,6]", "schemes.stage_nodes=6"]),
+    ...["study", "paper", join(configs, "paper.toml")],
+    ...set(["image.width=24", "image.height=16", 'paper.scenes=["tetra:2"]', 'paper.run_scenes=["teapot:2:pot"]']),
+    ...set(["paper.run_depths=[2]", "paper.levels=[1,3]", "paper.host_repetitions=0"]),
   ],
 };
 

@@ -63,11 +63,10 @@ room(studies/suite keys progress report sweep sweep/plan sweep/store tables)
 room(studies/frames host keys run tables)
 room(studies/operations host keys run tables)
 room(studies/paper host keys run tables)
-room(studies/schemes figures keys paper run tables)
 room(studies/stability keys run tables)
 room(studies/error estimate figures host keys run tables)
 room(studies/explore estimate figures host keys progress report/model report/page report/plots report/read run show tables)
-room(studies/cli compare driven error estimate explore figures frames host keys log_file operations paper progress report run run/plan run/trace schemes show
+room(studies/cli compare driven error estimate explore figures frames host keys log_file operations paper progress report run run/plan run/trace show
      stability suite sweep sweep/plan sweep/store tables)
 
 # A header pattern and the pattern of the files that may include it. C++'s own headers, which anyone may

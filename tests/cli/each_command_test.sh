@@ -49,8 +49,6 @@ marti study paper -- "$source/configs/paper.toml" --set image.width=8 --set imag
   --set 'paper.run_depths=[2,4]' --set 'paper.levels=[1,3]' --set paper.host_repetitions=1 -o paper
 marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12 \
   --set frames.count=2 --set frames.rate=2 -o frames
-marti study schemes -- "$source/configs/schemes.toml" "${small[@]}" --set 'schemes.nodes=[1,4]' \
-  --set 'schemes.cell_levels=[2,4]' --set schemes.stage_nodes=6 -o schemes
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set scene.source=gears:1 \
   --set error.repeats=1 --set error.side=12 --set 'error.samples=[1,2]' --set 'error.depths=[1]' -o error
 marti study stability -- "$source/configs/marti.toml" "${small[@]}" --set stability.rays=100 --set stability.nodes=64 -o stability

@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SweepOfAMachine", "sweep configs/marti.toml -o out", {"[sweep.axes]"}},
         Mistake{"SweepWithoutOutput", "sweep configs/sweep-small.toml", {"-o DIR is missing"}},
         Mistake{"WrongStudy", "study papers configs/paper.toml", {"did you mean \"paper\"", "stability"}},
-        Mistake{"NoStudy", "study", {"study: which command?", "schemes"}},
+        Mistake{"NoStudy", "study", {"study: which command?", "paper"}},
         Mistake{
             "SceneWithoutVerb", "scene teapot:12", {"no command \"teapot:12\"", "list, info and export"}}),
     [](const auto& info) { return std::string(info.param.name); });

@@ -29,7 +29,7 @@ TEST(ProgressOnATerminal, ARunSaysWhatItDoesAndOnlyThere) {
       {"explore", configs + "marti.toml", "--set", "image.width=1024", "--set", "image.height=1024", "--set",
        "cache.size=1 KiB", "--set", "machine.nodes=256", "--no-browser", "--for", "60"},
       directory.path() / "explored");
-  OnTerminal study({"study", "schemes", configs + "schemes.toml", "-o", directory.path() / "results"},
+  OnTerminal study({"study", "paper", configs + "paper.toml", "-o", directory.path() / "results"},
                    directory.path() / "study");
   OnTerminal run(long_run, directory.path() / "run");
   ASSERT_TRUE(run.wait_for(" of "));

@@ -72,8 +72,10 @@ class ReportCommand : public testing::Test {
     return made("sweep", "sweep " + quoted(place("sweep.toml")) + " --quiet");
   }
   [[nodiscard]] fs::path made_study() const {
-    return made("study",
-                "study schemes " + shipped("schemes.toml") + " --set image.width=8 --set image.height=8");
+    return made("study", "study paper " + shipped("paper.toml") +
+                             " --set image.width=8 --set image.height=6 --set 'paper.scenes=[\"tetra:2\"]'"
+                             " --set 'paper.run_scenes=[\"teapot:2:pot\"]' --set 'paper.run_depths=[2]'"
+                             " --set 'paper.levels=[1,3]' --set paper.host_repetitions=0");
   }
   /// A copy of what the command writes; it runs once for all tests.
   [[nodiscard]] fs::path made(const std::string& name, const std::string& command) const {
@@ -190,10 +192,10 @@ TEST_F(ReportCommand, ReportsAStudy) {
   ASSERT_EQ(made.status, 0) << made.output;
   const json data = data_of(place("study") / "report.html");
   EXPECT_EQ(data["kind"], "study");
-  EXPECT_TRUE(has_chart(data, "schemes"));
+  EXPECT_TRUE(has_chart(data, "figure3"));
   // Charts are made of the tables: nothing that stands in their files gets into the page.
   const std::string page = read(place("study") / "report.html");
-  write(place("study") / "schemes.vl.json",
+  write(place("study") / "figure3.vl.json",
         R"({"$schema": "vega-lite", "data": {"url": "http://example.org"}})");
   write(place("study") / "more.vl.json", "{");
   EXPECT_EQ(marti("report " + study).status, 0);

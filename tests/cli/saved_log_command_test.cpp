@@ -123,7 +123,7 @@ TEST_F(SavedLog, SaysWhatItCannotAnswer) {
     expect_refused("study " + std::string(study) + " " + small_run + from_log() + " -o " + quoted(file("o")),
                    "a log serves to time machines. Take scene.source in its place");
   }
-  for (const char* study : {"frames animation.toml", "paper paper.toml", "schemes schemes.toml"}) {
+  for (const char* study : {"frames animation.toml", "paper paper.toml"}) {
     const std::string name(study);
     const std::size_t space = name.find(' ');
     expect_refused("study " + name.substr(0, space) + " " + shipped(name.substr(space + 1)) + from_log() +

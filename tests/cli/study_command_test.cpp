@@ -76,8 +76,8 @@ TEST(Study, WhatIsRefusedLeavesNoDirectory) {
   const std::string out = " --set scene.source=none.glb -o " + quoted(directory.path() / "new" / "below");
   for (const std::string& study :
        {"operations " + quoted(configs / "marti.toml"), "paper " + quoted(configs / "paper.toml"),
-        "frames " + quoted(configs / "marti.toml"), "schemes " + quoted(configs / "schemes.toml"),
-        "error " + quoted(configs / "error.toml"), "stability " + quoted(configs / "marti.toml")}) {
+        "frames " + quoted(configs / "marti.toml"), "error " + quoted(configs / "error.toml"),
+        "stability " + quoted(configs / "marti.toml")}) {
     expect_refused("study " + study + out, "scene.source");
     EXPECT_FALSE(fs::exists(directory.path() / "new")) << study;
   }

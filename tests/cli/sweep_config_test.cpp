@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "tests/cli/shell.h"
@@ -54,6 +55,25 @@ TEST(SweepConfig, MisspeltSectionsStayErrors) {
        }) {
     write(file, text);
     expect_refused("run " + quoted(file), message);
+  }
+}
+
+// The shipped questions about the paper's arguments, of a smaller image and fewer machines: directions only.
+TEST(SweepConfig, ThePapersArgumentsAboutParallelMachinesAgree) {
+  const std::string small = " --quiet --set image.width=96 --set image.height=96 -o ";
+  for (const auto& [file, axis, claims] : std::initializer_list<std::tuple<const char*, const char*, int>>{
+           {"parallel-schemes", " --axis machine.nodes=1,4,16,64", 3},
+           {"pipeline-stages", "", 1},
+           {"cell-size", " --axis structure.max_level=5,7,11", 1}}) {
+    const TemporaryDirectory directory;
+    const Outcome found = marti("sweep " + shipped("questions/" + std::string(file) + ".toml") + axis +
+                                small + quoted(directory.path() / "out"));
+    ASSERT_EQ(found.status, 0) << found.output;
+    int agree = 0;
+    for (std::size_t at = 0; (at = found.output.find("\n  agrees  ", at)) != std::string::npos; ++at) {
+      ++agree;
+    }
+    EXPECT_EQ(agree, claims) << found.output;
   }
 }
 

@@ -20,7 +20,6 @@
 #include "studies/keys/record_keys.h"
 #include "studies/paper/paper_keys.h"
 #include "studies/run/run_result.h"
-#include "studies/schemes/schemes_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "tests/support/files.h"
@@ -68,9 +67,7 @@ std::vector<Command> commands() {
           {studies::sweep::sweep_schema(), [](Config& config) { (void)studies::sweep::plan_sweep(config); },
            "sweep-small.toml"},
           {studies::paper::paper_schema(), [](Config& config) { (void)studies::paper::read_paper(config); },
-           "paper.toml"},
-          {studies::schemes::schemes_schema(),
-           [](Config& config) { (void)studies::schemes::read_schemes(config); }, "schemes.toml"}};
+           "paper.toml"}};
 }
 
 // Beside the shipped files, of which some name others.

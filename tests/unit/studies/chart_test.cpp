@@ -94,7 +94,7 @@ TEST(Chart, ChartsOfManyLinesSayWhatTheirLinesAre) {
     }
   }
   EXPECT_EQ(shared_out,
-            (std::set<std::string>{"figure3", "memory_latency", "schemes", "schemes_efficiency"}));
+            (std::set<std::string>{"figure3", "memory_latency"}));
 }
 
 }  // namespace

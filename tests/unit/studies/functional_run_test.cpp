@@ -280,7 +280,7 @@ TEST(Run, EveryShippedConfigurationCanBeRun) {
         entry.path().extension() == ".toml" ? sim::read_file(entry.path(), 100'000) : "[paper]";
     // Configurations of studies are run by the tests of the studies.
     const auto is_of = [&](const char* section) { return text.find(section) != std::string::npos; };
-    if (!is_of("[paper]") && !is_of("[schemes]") && !is_of("[error]") && !is_of("[suite")) {
+    if (!is_of("[paper]") && !is_of("[error]") && !is_of("[suite")) {
       ++configurations;
       sim::Config config = sim::Config::from_file(run_schema(), entry.path(), small);
       const std::string summary =
