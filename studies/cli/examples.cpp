@@ -29,7 +29,7 @@ constexpr std::array<Examples, 26> table = {{
      {"marti study operations", "marti study operations --set scene.source=gears:4 -o out/operations"}},
     {"study paper",
      {"marti study paper configs/paper.toml -o out/paper",
-      "marti study paper configs/paper.toml --set 'paper.levels=[1,3,5]' -o out/paper"}},
+      "marti study paper configs/paper.toml --set 'paper.rules=[3,5]' -o out/paper"}},
     {"study frames",
      {"marti study frames configs/animation.toml -o out/frames",
       "marti study frames configs/animation.toml --set frames.count=4 -o out/frames"}},

@@ -239,93 +239,6 @@ tables::Claim worst_case(std::span<const TracedRun> runs) {
   return claim;
 }
 
-// The rule that the paper recommends.
-constexpr double recommended = 10.0;
-
-/// A saving of `what` by the recommended rule and the largest of any initial level, run by run. The scene of
-/// 19,000 polygons decides: it agrees when that saves as much as the paper says by the rule, in part when
-/// only by another initial level.
-template <class Value>
-tables::Claim saving(std::span<const RunOutcomes> runs, std::string_view what, double published,
-                     const Value& value) {
-  tables::Claim claim{fmt::format("{} saved by building on demand", what),
-                      fmt::format("{:.0f} %", 100.0 * published), "", tables::Verdict::not_measured};
-  double largest = -1.0;
-  double by_rule = -1.0;
-  for (const RunOutcomes& run : runs) {
-    double most = -1.0;
-    for (const LevelOutcome& level : run.levels) {
-      most = std::max(most, saved(value(level), value(run.whole())));
-    }
-    const LevelOutcome* rule = run.by_rule(recommended);
-    claim.here += (claim.here.empty() ? "" : "; ") + name_of(run.run) + ": ";
-    if (rule != nullptr) {
-      const double share = saved(value(*rule), value(run.whole()));
-      claim.here += tables::rough_percent(share) + " with k = 10, ";
-      by_rule = run.run.scene == large ? std::max(by_rule, share) : by_rule;
-    }
-    claim.here += fmt::format("at most {:.1f} %", 100.0 * most);
-    largest = run.run.scene == large ? std::max(largest, most) : largest;
-  }
-  if (largest >= 0.0) {
-    claim.verdict = by_rule >= published   ? tables::Verdict::agrees
-                    : largest >= published ? tables::Verdict::in_part
-                                           : tables::Verdict::differs;
-  }
-  return claim;
-}
-
-double longer(sim::Ticks time, sim::Ticks whole) {
-  return 0.0 - saved(static_cast<std::uint64_t>(time), static_cast<std::uint64_t>(whole));  // no -0
-}
-
-/// No frame takes more than 1 % longer, the building included.
-tables::Claim penalty(std::span<const RunOutcomes> runs) {
-  tables::Claim claim{"time with k = 10 against the whole tree", "no significant penalty", "",
-                      tables::Verdict::not_measured};
-  bool always = true;
-  for (const RunOutcomes& run : runs) {
-    if (const LevelOutcome* rule = run.by_rule(recommended)) {
-      const double frame = longer(rule->render, run.whole().render);
-      const double total = longer(rule->total(), run.whole().total());
-      always = always && total <= 0.01;
-      claim.here +=
-          (claim.here.empty() ? "" : "; ") + fmt::format("{}: frame {:+.2f} %, with the build {:+.2f} %",
-                                                         name_of(run.run), 100.0 * frame, 100.0 * total);
-    }
-  }
-  if (!claim.here.empty()) {
-    claim.verdict = tables::verdict_of(always);
-  }
-  return claim;
-}
-
-/// The frame after the build takes at most 1 % longer with any initial level beyond 8.
-tables::Claim alike_beyond(std::span<const RunOutcomes> runs) {
-  tables::Claim claim{"rendering by initial level", "alike beyond level 8", "",
-                      tables::Verdict::not_measured};
-  bool always = true;
-  for (const RunOutcomes& run : runs) {
-    std::optional<double> most;
-    for (const LevelOutcome& level : run.levels) {
-      if (level.initial.level > 8 && !level.initial.whole) {
-        const double more = longer(level.render, run.whole().render);
-        most = std::max(most.value_or(more), more);
-      }
-    }
-    if (!most) {
-      continue;
-    }
-    always = always && *most <= 0.01;
-    claim.here += (claim.here.empty() ? "" : "; ") +
-                  fmt::format("{}: at most {:+.2f} %", name_of(run.run), 100.0 * *most);
-  }
-  if (!claim.here.empty()) {
-    claim.verdict = tables::verdict_of(always);
-  }
-  return claim;
-}
-
 }  // namespace
 
 std::vector<tables::Claim> check_tree_claims(std::span<const SceneTrees> scenes) {
@@ -344,13 +257,6 @@ std::vector<tables::Claim> check_tree_claims(std::span<const SceneTrees> scenes)
 std::vector<tables::Claim> check_access_claims(std::span<const TracedRun> runs) {
   const TracedRun* run = find_pot(runs);
   return {deep_accesses(run), access_drop(run), access_fall(run), worst_case(runs), frame_operations(runs)};
-}
-
-std::vector<tables::Claim> check_build_claims(std::span<const RunOutcomes> runs) {
-  return {saving(runs, "memory", 0.45, [](const LevelOutcome& level) { return level.bytes; }),
-          saving(runs, "time for building", 0.2,
-                 [](const LevelOutcome& level) { return static_cast<std::uint64_t>(level.building()); }),
-          penalty(runs), alike_beyond(runs)};
 }
 
 }  // namespace marti::studies::paper

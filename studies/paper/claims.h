@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "studies/paper/building_table.h"
-#include "studies/paper/host_builds.h"
+#include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
 #include "studies/tables/claim.h"
 
@@ -15,8 +14,5 @@ namespace marti::studies::paper {
 /// not_measured.
 [[nodiscard]] std::vector<tables::Claim> check_tree_claims(std::span<const SceneTrees> scenes);
 [[nodiscard]] std::vector<tables::Claim> check_access_claims(std::span<const TracedRun> runs);
-
-/// The claims about trees that are built while they are used.
-[[nodiscard]] std::vector<tables::Claim> check_build_claims(std::span<const RunOutcomes> runs);
 
 }  // namespace marti::studies::paper

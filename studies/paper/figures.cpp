@@ -2,40 +2,9 @@
 
 #include <numeric>
 
-#include "sim/error.h"
-
 namespace marti::studies::paper {
 
 namespace {
-
-Task task_of(processors::cost::Activity activity) {
-  using processors::cost::Activity;
-  switch (activity) {
-    case Activity::building:
-      return Task::build;
-    case Activity::traversal:
-      return Task::traversal;
-    case Activity::intersection:
-      return Task::intersection;
-    case Activity::shading:
-      return Task::shading;
-    case Activity::cache_access:
-    case Activity::interconnect_wait:
-    case Activity::transfer:
-    case Activity::bank_wait:
-    case Activity::bank_access:
-    case Activity::queue_full_wait:
-      return Task::memory;
-    case Activity::switching:
-    case Activity::messaging:
-    case Activity::lock_wait:
-    case Activity::message_wait:
-    case Activity::dispatch_wait:
-    case Activity::idle:
-      return Task::other;
-  }
-  throw sim::InternalError("an activity that belongs to no task");
-}
 
 /// Zero where there is nothing to share.
 double share(std::uint64_t part, std::uint64_t whole) {
@@ -43,35 +12,6 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 }  // namespace
-
-TaskTimes tasks_of(const processors::cost::TimeSums& time) {
-  TaskTimes sums{};
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    sim::Ticks& sum = sums[static_cast<std::size_t>(task_of(static_cast<processors::cost::Activity>(i)))];
-    sum = sim::ticks_of(sum + time[i]);
-  }
-  return sums;
-}
-
-tables::Table task_table(std::span<const TracedRun> runs, std::span<const TaskTimes> times) {
-  sim::ensure(runs.size() == times.size(), "figure 1 needs the times of every run");
-  tables::Table table("figure1", "Figure 1: time by task, the whole tree being built before the frame",
-                      {tables::text_column("run", "scene and depth of rays"),
-                       tables::text_column("task", "what the time goes to"),
-                       tables::count_column("rank", "order of the tasks"),
-                       tables::integer_column("time", "ps", "time of all nodes together"),
-                       tables::real_column("share", "fraction", "share of the time of all nodes together")});
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto all =
-        static_cast<std::uint64_t>(std::accumulate(times[i].begin(), times[i].end(), sim::Ticks{0}));
-    for (std::size_t task = 0; task < tasks; ++task) {
-      const sim::Ticks time = times[i][task];
-      table.add_row(
-          {name_of(runs[i].run), task_names[task], task, time, share(static_cast<std::uint64_t>(time), all)});
-    }
-  }
-  return table;
-}
 
 tables::Table memory_table(std::span<const TracedRun> runs, const memory::LayoutConfig& layout) {
   tables::Table table(

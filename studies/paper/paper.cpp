@@ -11,14 +11,11 @@
 
 #include "sim/error.h"
 #include "sim/finished_parts.h"
-#include "sim/mapped.h"
-#include "sim/units.h"
 #include "studies/host/image_file.h"
-#include "studies/paper/building_table.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
-#include "studies/paper/host_builds.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
 #include "studies/paper/tree_table.h"
 #include "studies/run/scene_hash.h"
 #include "studies/tables/provenance.h"
@@ -61,33 +58,29 @@ tables::Table scene_table(const sim::Config& config, const PaperConfig& paper,
   return table;
 }
 
-std::string head_of(const sim::Config& config, const PaperConfig& paper) {
+std::string head_of(const PaperConfig& paper) {
   const accel::OctreeOptions& octree = paper.frame.structure_options.octree;
   return fmt::format(
       "Space subdivision as the paper of 1992 studied it\n"
       "trees    at most {} in a leaf, {}\n"
-      "images   {}\n"
-      "machine  {} at {}, operations as \"{}\"\n",
+      "images   {}\n",
       tables::counted(octree.max_objects, "primitive"), tables::counted(octree.max_level, "level"),
-      keys::size_text(paper.frame.render), tables::counted(paper.machine.all_nodes(), "node"),
-      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
+      keys::size_text(paper.frame.render));
 }
 
 /// The tables for people: those with a row for each level get a column for each level instead. Left out are
-/// the claims, which have a text of their own, and the table behind a chart, which repeats others.
+/// the claims, which have a text of their own.
 std::string text_of_tables(std::span<const tables::Table> tables) {
   std::string text;
   for (const tables::Table& table : tables) {
     const std::string& name = table.name();
-    if (name == "claims" || name == "initial_levels") {
+    if (name == "claims") {
       continue;
     }
     text += "\n";
     if (name == "rules") {
       text +=
           tables::text_of(tables::widen(table, std::array{std::string_view("scene")}, "level", "l", "ratio"));
-    } else if (name == "figure1") {
-      text += tables::text_of(tables::widen(table, std::array{std::string_view("run")}, "task", "", "share"));
     } else if (name == "figure2") {
       text += tables::text_of(tables::widen(
           table, std::array{std::string_view("run"), std::string_view("tree")}, "level", "l", "bytes"));
@@ -106,15 +99,12 @@ std::string text_of_tables(std::span<const tables::Table> tables) {
 tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
   PaperConfig paper = read_paper(config);
   paper.frame.wait_with(meter);
-  const memory::LayoutConfig& layout = paper.machine.layout;
+  const memory::LayoutConfig layout;
 
   // One after the other, so that the host's seconds mean something.
   std::vector<SceneTrees> trees;
-  const std::size_t levels = paper.runs.size() * (paper.levels.size() + paper.rules.size() + 1);  // about
   sim::plan_parts(meter, "scenes", paper.scenes.size());
   sim::plan_parts(meter, "frames", paper.runs.size());
-  sim::plan_parts(meter, "machines", levels);
-  sim::plan_parts(meter, "trees on this computer", paper.host_repetitions != 0 ? levels : 0);
   for (const std::string& name : paper.scenes) {
     const scenes::Scene scene = open(config, paper, name, "paper.scenes");
     sim::begin_part(meter, "building the trees of " + name);
@@ -137,35 +127,20 @@ tables::StudyOutput run_paper(sim::Config& config, sim::WorkMeter* meter) {
                              "name fewer runs in paper.run_scenes, or lower image.width");
     keys::give_memory(beside.frame.memory, beside.frame.structure_options);
   }
-  const std::vector<RunOutcomes> outcomes = time_initial_levels(paper, runs);
-  const std::vector<TaskTimes> times =
-      sim::mapped(outcomes, [&](const RunOutcomes& run) { return tasks_of(run.whole().time); });
-
   std::vector<tables::Claim> claims = check_tree_claims(trees);
-  for (const std::vector<tables::Claim>& more : {check_access_claims(runs), check_build_claims(outcomes)}) {
-    claims.insert(claims.end(), more.begin(), more.end());
-  }
+  const std::vector<tables::Claim> more = check_access_claims(runs);
+  claims.insert(claims.end(), more.begin(), more.end());
 
   tables::StudyOutput output;
   std::vector<tables::Table>& tables = output.tables;
   tables = {tree_table(trees, layout), rule_table(trees), rule_level_table(trees, paper.rules)};
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    tables.push_back(building_table(i, outcomes[i]));
-  }
-  tables.push_back(savings_table(outcomes, paper.rules));
-  tables.push_back(initial_level_table(outcomes));
-  tables.push_back(task_table(runs, times));
   tables.push_back(memory_table(runs, layout));
   tables.push_back(access_table(runs));
   tables.push_back(tables::claim_table(claims));
-  output.report = head_of(config, paper) + text_of_tables(output.tables) + "\n" + tables::text_of(claims);
+  output.report = head_of(paper) + text_of_tables(output.tables) + "\n" + tables::text_of(claims);
   output.tables.push_back(std::move(scenes));
   output.tables.push_back(tables::provenance_table(config.effective_values()));
   output.host_tables = {host_tree_table(trees), tables::host_table()};
-  sim::begin_part(meter, "measuring trees on this computer");
-  for (std::size_t i = 0; i < runs.size() && paper.host_repetitions != 0; ++i) {
-    output.host_tables.push_back(host_building_table(i, runs[i].run, measure_host(paper, runs[i])));
-  }
   for (const tables::Table& table : output.host_tables) {
     output.host_report += (output.host_report.empty() ? "" : "\n") + tables::text_of(table);
   }

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-#include "processors/node/memory_system.h"
 #include "sim/shown.h"
 #include "studies/keys/key_parts.h"
-#include "studies/keys/machine_keys.h"
-#include "studies/run/run_result.h"
+#include "studies/keys/other_commands.h"
 
 namespace marti::studies::paper {
 
@@ -31,9 +29,6 @@ constexpr OwnKey own_keys[] = {
     {"frames.first", "paper.scenes and paper.run_scenes"},
     {"frames.rate", "paper.scenes and paper.run_scenes"},
     {"image.max_depth", "paper.run_depths"},
-    {"build.sharing", "paper.levels and paper.rules"},
-    {"build.initial_level", "paper.levels and paper.rules"},
-    {"build.rule_k", "paper.rules"},
 };
 
 std::vector<PaperRun> read_runs(const sim::Config& config) {
@@ -66,30 +61,25 @@ keys::FrameConfig PaperConfig::frame_of(const PaperRun& run) const {
 }
 
 void declare_paper_keys(sim::Schema& schema) {
-  schema.section("paper",
-                 "only for `marti study paper`, which sets scene.*, image.max_depth and build.* itself and "
-                 "wants an octree");
+  schema.section(
+      "paper",
+      "only for `marti study paper`, which sets scene.* and image.max_depth itself and wants an octree");
   schema.texts("paper.scenes", {"gears:2", "tetra:6", "teapot:4:pot", "teapot:12:pot", "large"},
                "scenes whose octree and BSP tree are compared (table 1)");
   schema.texts("paper.run_scenes", {"gears:2", "teapot:12:pot", "teapot:12:pot", "large"},
-               "scenes to render with trees built to several initial levels (tables 2 onwards)");
+               "scenes to render, whose memory and accesses are counted level by level (figures 2 and 3)");
   schema.integers("paper.run_depths", {2, 2, 4, 2}, {1, processors::program::max_ray_depth}, "rays",
                   "longest chain of rays in each of them, the eye ray being 1");
-  schema.integers(
-      "paper.levels", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {1, 21}, "",
-      "initial levels to try, beside the whole tree; those beyond structure.max_level are left out");
   schema.reals(
       "paper.rules", {3.0, 10.0}, {0.0, 1e6}, "",
       "k of the rules \"stop at the first level with more than k times as many leaves as other nodes\"");
-  schema.integer(
-      "paper.host_repetitions", 3, {0, 1000}, "",
-      "how often each initial level is built and rendered on the host, the least time being kept; 0: "
-      "not at all");
 }
 
 sim::Schema paper_schema() {
-  sim::Schema schema = run::run_schema();
+  sim::Schema schema;
+  keys::declare_frame_keys(schema);
   declare_paper_keys(schema);
+  keys::declare_sections_of_other_commands(schema);
   return schema;
 }
 
@@ -107,27 +97,9 @@ PaperConfig read_paper(sim::Config& config) {
   if (paper.frame.structure != "octree") {
     config.fail("structure.kind", "the study builds octrees, and BSP trees beside them");
   }
-  paper.machine = keys::read_machine(config);
-  if (paper.machine.placement != processors::machine::Placement::shared) {
-    config.fail("database.placement", "the study builds one tree that all nodes share");
-  }
-  if (paper.machine.banks.dram) {
-    config.fail("memory.model", "the paper's machines have banks whose accesses all take the same time");
-  }
-  if (processors::machine::writes_done_later(paper.machine)) {
-    config.fail("interconnect.arbitration",
-                "the study builds one tree that all nodes share: it must be fifo");
-  }
-  processors::machine::MachineConfig building = paper.machine;
-  building.build.sharing = processors::machine::Sharing::shared;
-  keys::check_machine(config, building);
   paper.scenes = keys::study_scenes(config, "paper.scenes");
   paper.runs = read_runs(config);
-  paper.levels = keys::ascending<std::uint32_t>(config, "paper.levels");
-  std::erase_if(paper.levels,
-                [&](std::uint32_t level) { return level >= paper.frame.structure_options.octree.max_level; });
   paper.rules = config.reals("paper.rules");
-  paper.host_repetitions = keys::count(config, "paper.host_repetitions");
   config.refuse_unused();
   return paper;
 }

@@ -174,7 +174,7 @@ describe("the values", () => {
   it("of a study are those of its tables", () =>
     withPage("study", async (page) => {
       const names = await chartNames(page);
-      assert.ok(names.length >= 4);
+      assert.ok(names.length >= 3);
       for (const name of names) {
         const specification = readJson(join(reports.study.directory, `${name}.vl.json`));
         const table = specification.data.name;

@@ -22,7 +22,7 @@ const commands = {
   study: [
     ...["study", "paper", join(configs, "paper.toml")],
     ...set(["image.width=24", "image.height=16", 'paper.scenes=["tetra:2"]', 'paper.run_scenes=["teapot:2:pot"]']),
-    ...set(["paper.run_depths=[2]", "paper.levels=[1,3]", "paper.host_repetitions=0"]),
+    ...set(["paper.run_depths=[2]"]),
   ],
 };
 

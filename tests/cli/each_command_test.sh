@@ -46,7 +46,7 @@ marti report -- sweep
 marti study operations -- "${small[@]}"
 marti study paper -- "$source/configs/paper.toml" --set image.width=8 --set image.height=6 \
   --set 'paper.scenes=["tetra:2"]' --set 'paper.run_scenes=["teapot:2:pot","teapot:2:pot"]' \
-  --set 'paper.run_depths=[2,4]' --set 'paper.levels=[1,3]' --set paper.host_repetitions=1 -o paper
+  --set 'paper.run_depths=[2,4]' -o paper
 marti study frames -- "$source/configs/animation.toml" --set image.width=16 --set image.height=12 \
   --set frames.count=2 --set frames.rate=2 -o frames
 marti study error -- "$source/configs/error.toml" --set image.width=9 --set image.height=9 --set scene.source=gears:1 \

@@ -74,8 +74,7 @@ class ReportCommand : public testing::Test {
   [[nodiscard]] fs::path made_study() const {
     return made("study", "study paper " + shipped("paper.toml") +
                              " --set image.width=8 --set image.height=6 --set 'paper.scenes=[\"tetra:2\"]'"
-                             " --set 'paper.run_scenes=[\"teapot:2:pot\"]' --set 'paper.run_depths=[2]'"
-                             " --set 'paper.levels=[1,3]' --set paper.host_repetitions=0");
+                             " --set 'paper.run_scenes=[\"teapot:2:pot\"]' --set 'paper.run_depths=[2]'");
   }
   /// A copy of what the command writes; it runs once for all tests.
   [[nodiscard]] fs::path made(const std::string& name, const std::string& command) const {

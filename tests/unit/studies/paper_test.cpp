@@ -3,17 +3,20 @@
 #include <tbb/global_control.h>
 
 #include <cstdint>
-#include <numeric>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "accel/structure.h"
+#include "processors/replay/replay.h"
 #include "sim/config.h"
 #include "sim/error.h"
 #include "studies/paper/claims.h"
 #include "studies/paper/figures.h"
-#include "studies/paper/host_builds.h"
 #include "studies/paper/paper.h"
 #include "studies/paper/paper_keys.h"
+#include "studies/paper/traced_run.h"
+#include "studies/run/open_frame.h"
 #include "studies/tables/csv.h"
 #include "tests/support/wrong_configurations.h"
 
@@ -26,9 +29,9 @@ using studies::tables::StudyOutput;
 using studies::tables::Table;
 
 constexpr const char* small =
-    "[image]\nwidth = 32\nheight = 24\n[machine]\nnodes = 2\n[structure]\nmax_objects = 9\n[paper]\n"
+    "[image]\nwidth = 32\nheight = 24\n[structure]\nmax_objects = 9\n[paper]\n"
     "scenes = [\"tetra:2\", \"teapot:4:pot\"]\nrun_scenes = [\"gears:1\", \"teapot:3:pot\"]\n"
-    "run_depths = [2, 3]\nlevels = [1, 3, 5]\nhost_repetitions = 0\n";
+    "run_depths = [2, 3]\n";
 
 StudyOutput run(const std::string& text, int threads = 2) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -78,14 +81,12 @@ TEST(Paper, EveryNumberOfNodesHasBranchesAndLeaves) {
 
 TEST(Paper, SharesAddUpToOne) {
   const StudyOutput output = run(small);
-  for (const char* name : {"figure1", "figure3"}) {
-    const Table& table = table_of(output, name);
-    double sum = 0.0;
-    for (std::size_t row = 0; row < table.rows().size(); ++row) {
-      sum += std::get<double>(table.at(row, "share"));
-    }
-    EXPECT_NEAR(sum, 2.0, 1e-9) << name << ": one for each of two runs";
+  const Table& table = table_of(output, "figure3");
+  double sum = 0.0;
+  for (std::size_t row = 0; row < table.rows().size(); ++row) {
+    sum += std::get<double>(table.at(row, "share"));
   }
+  EXPECT_NEAR(sum, 2.0, 1e-9) << "one for each of two runs";
 }
 
 // The nodes of all levels together.
@@ -99,67 +100,60 @@ studies::paper::LevelCount sum_of(const std::vector<studies::paper::LevelCount>&
   return sum;
 }
 
-// The tree that the host builds while rays are traced is the one that the log says they need.
+studies::paper::PaperConfig small_config() {
+  sim::Config config = sim::Config::from_text(studies::paper::paper_schema(), small, "paper.toml");
+  return studies::paper::read_paper(config);
+}
+
+// The tree that this computer builds while rays are traced is the one that the log says they need.
 TEST(HostBuilds, LeaveTheTreeThatTheLogPredicts) {
-  sim::Config config =
-      sim::Config::from_text(studies::paper::paper_schema(), std::string(small) + "rules = [3.0]\n",
-                             "paper.toml", std::vector<std::string>{"paper.host_repetitions=1"});
-  const studies::paper::PaperConfig paper = studies::paper::read_paper(config);
+  const studies::paper::PaperConfig paper = small_config();
   for (const studies::paper::PaperRun& run : paper.runs) {
     const studies::paper::TracedRun traced = studies::paper::trace_run(paper, run);
-    const auto outcomes = studies::paper::measure_host(paper, traced);
-    ASSERT_GE(outcomes.size(), 4U);
-    for (const studies::paper::HostOutcome& outcome : outcomes) {
-      SCOPED_TRACE(studies::paper::name_of(run) + " level " + std::to_string(outcome.initial.level));
+    const studies::keys::FrameConfig frame = paper.frame_of(run);
+    const scenes::Scene scene = studies::run::open_frame(frame);
+    const auto triangles = std::make_shared<const accel::TriangleSet>(scene);
+    for (const std::uint32_t level : {1U, 3U, 5U}) {
+      accel::LazyOctreeOptions options;
+      options.tree = frame.structure_options.octree;
+      options.initial.level = level;
+      const auto structure = accel::make_lazy_octree(triangles, options);
+      (void)processors::program::render(scene, *triangles, *structure, frame.render);
+      const auto& lazy = dynamic_cast<const accel::StructureOf<accel::LazyOctree>&>(*structure).concrete();
       const studies::paper::LevelCount all =
-          sum_of(count_lazy_levels(traced.log->topology, traced.visits.touched, outcome.initial.level));
-      EXPECT_EQ(outcome.nodes, all.nodes());
-      EXPECT_EQ(outcome.partial, all.partial);
-      EXPECT_GE(outcome.build_seconds, 0.0);
-      EXPECT_GT(outcome.render_seconds, 0.0);
+          sum_of(count_lazy_levels(traced.log->topology, traced.visits.touched, level));
+      EXPECT_EQ(lazy.state().all.nodes(), all.nodes()) << studies::paper::name_of(run) << " level " << level;
+      EXPECT_EQ(lazy.state().all.pending, all.partial) << studies::paper::name_of(run) << " level " << level;
     }
-    EXPECT_EQ(outcomes.back().partial, 0U);
-    EXPECT_GT(outcomes.front().partial, 0U);
   }
 }
 
 // The simulated machine, node by node and line by line, leaves the tree that a count over the log predicts;
 // and building the whole tree before the frame takes the splits and the memory of all branches.
 TEST(BuildTimes, LeaveTheTreeThatTheLogPredicts) {
-  sim::Config config = sim::Config::from_text(studies::paper::paper_schema(), small, "paper.toml");
-  const studies::paper::PaperConfig paper = studies::paper::read_paper(config);
-  std::vector<studies::paper::TracedRun> traced;
+  const studies::paper::PaperConfig paper = small_config();
   for (const studies::paper::PaperRun& run : paper.runs) {
-    traced.push_back(studies::paper::trace_run(paper, run));
-  }
-  const std::vector<studies::paper::RunOutcomes> runs = studies::paper::time_initial_levels(paper, traced);
-  ASSERT_EQ(runs.size(), traced.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (const studies::paper::LevelOutcome& outcome : runs[i].levels) {
-      const auto levels =
-          count_lazy_levels(traced[i].log->topology, traced[i].visits.touched, outcome.initial.level);
+    const studies::paper::TracedRun traced = studies::paper::trace_run(paper, run);
+    for (const std::uint32_t level : {1U, 3U, 5U, 100U}) {
+      processors::machine::MachineConfig machine;
+      machine.nodes = 2;
+      const bool whole = level > traced.levels.size();
+      machine.build.sharing =
+          whole ? processors::machine::Sharing::none : processors::machine::Sharing::shared;
+      machine.build.initial =
+          whole ? processors::machine::InitialTree::full : processors::machine::InitialTree::level;
+      machine.build.level = level;
+      const processors::node::BuildResult build = processors::replay::replay(*traced.log, machine).build;
+      const auto levels = count_lazy_levels(traced.log->topology, traced.visits.touched, level);
       const studies::paper::LevelCount all = sum_of(levels);
-      EXPECT_EQ(outcome.nodes, all.nodes()) << outcome.initial.level;
-      EXPECT_EQ(outcome.partial, all.partial) << outcome.initial.level;
-      EXPECT_EQ(outcome.splits, all.branches) << outcome.initial.level;
-      EXPECT_EQ(outcome.bytes, bytes_of(levels, paper.machine.layout)) << outcome.initial.level;
-      EXPECT_EQ(std::accumulate(outcome.time.begin(), outcome.time.end(), sim::Sum{0}),
-                paper.machine.all_nodes() * outcome.total());
+      const processors::node::BuildLevel left = build.all_levels();
+      const auto count = [](std::uint64_t number) { return static_cast<std::int64_t>(number); };
+      EXPECT_EQ(left.branches + left.leaves + left.partial, count(all.nodes())) << level;
+      EXPECT_EQ(left.partial, count(all.partial)) << level;
+      EXPECT_EQ(build.counts().all_splits(), count(all.branches)) << level;
+      EXPECT_EQ(left.node_bytes + left.list_bytes, count(bytes_of(levels, machine.layout))) << level;
+      EXPECT_EQ(build.start_up == 0, level == 1) << "nothing is built beforehand at level 1";
     }
-    EXPECT_TRUE(runs[i].whole().initial.whole);
-    EXPECT_EQ(runs[i].levels.front().build, 0) << "nothing is built beforehand at level 1";
-    EXPECT_GT(runs[i].whole().build, 0);
-  }
-}
-
-TEST(Tasks, TakeEveryTickOfANode) {
-  processors::cost::TimeSums time{};
-  std::iota(time.begin(), time.end(), sim::Ticks{1});
-  const studies::paper::TaskTimes sums = studies::paper::tasks_of(time);
-  EXPECT_EQ(std::accumulate(sums.begin(), sums.end(), sim::Ticks{0}),
-            std::accumulate(time.begin(), time.end(), sim::Sum{0}));
-  for (const sim::Ticks sum : sums) {
-    EXPECT_GT(sum, 0);
   }
 }
 
@@ -169,9 +163,6 @@ TEST(Claims, SayWhatWasNotMeasured) {
     EXPECT_EQ(claim.here, "");
   }
   for (const studies::tables::Claim& claim : studies::paper::check_access_claims({})) {
-    EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject;
-  }
-  for (const studies::tables::Claim& claim : studies::paper::check_build_claims({})) {
     EXPECT_EQ(claim.verdict, studies::tables::Verdict::not_measured) << claim.subject;
   }
 }
@@ -193,11 +184,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
   const std::vector<test::WrongConfiguration> cases = {
       {"[scene]\nsource = \"tetra:2\"\n", {"paper.toml:2", "scene.source", "paper.run_scenes"}},
       {"[image]\nmax_depth = 3\n", {"paper.toml:2", "image.max_depth"}},
-      {"[build]\nsharing = \"shared\"\n", {"paper.toml:2", "build.sharing", "paper.levels"}},
       {"[structure]\nkind = \"bsp\"\n", {"paper.toml:2", "structure.kind", "octree"}},
-      {"[database]\nplacement = \"distributed\"\n", {"paper.toml:2", "database.placement"}},
-      {"[interconnect]\narbitration = \"round_robin\"\n",
-       {"paper.toml:2", "interconnect.arbitration", "fifo"}},
       {"[paper]\nscenes = []\n", {"paper.toml:2", "paper.scenes"}},
       {"[paper]\nscenes = [\"tetra:2\", \"tetra:2\"]\n", {"paper.toml:2", "paper.scenes", "tetra:2 twice"}},
       {"[paper]\nscenes = [\"teapott:4\"]\n", {"paper.toml:2", "paper.scenes", "teapot"}},
@@ -206,7 +193,7 @@ TEST(Paper, WrongConfigurationsAreRefused) {
       {"[paper]\nrun_depths = [2]\n", {"paper.toml:2", "paper.run_depths", "4"}},
       {"[paper]\nrun_scenes = [\"tetra:1\", \"tetra:1\"]\nrun_depths = [2, 2]\n",
        {"paper.toml:2", "paper.run_scenes", "twice"}},
-      {"[paper]\nlevels = [0]\n", {"paper.toml:2", "paper.levels"}},
+      {"[machine]\nnodes = 2\n", {"paper.toml:2", "machine.nodes"}},
       {"[paper]\nrules = [-1.0]\n", {"paper.toml:2", "paper.rules"}},
   };
   test::expect_refusals(cases, [](const char* text) { run(text); });
