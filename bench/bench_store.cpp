@@ -113,15 +113,8 @@ void run(bench::Report& report, std::size_t machines, const std::filesystem::pat
     store.close();
     said("closed", closing.seconds());
   }
-  std::size_t buckets = 0;
-  for (const studies::sweep::SweepRow& row : sweep.rows) {
-    for (const studies::sweep::SweepHistogram& histogram : row.histograms) {
-      buckets += histogram.buckets.size();
-    }
-  }
   const auto bytes = static_cast<double>(std::filesystem::file_size(file));
-  std::printf("%-28s%10.0f B (%zu histogram buckets)\n", "a machine", bytes / static_cast<double>(machines),
-              buckets / sweep.rows.size());
+  std::printf("%-28s%10.0f B\n", "a machine", bytes / static_cast<double>(machines));
   report.add({.name = "store, a machine", .unit = "B", .ours = bytes / static_cast<double>(machines)});
   Stopwatch watch;
   studies::sweep::SweepStore store(file, sweep.plan);

@@ -104,6 +104,8 @@ CLI::Option* add_file(CLI::App* command, std::string& file) {
 void add_assignments(CLI::App* command, std::vector<std::string>& assignments) {
   command->add_option("--set", assignments, "key=value, overrides the file; may be repeated")
       ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
 }
 

@@ -40,7 +40,7 @@ RecordConfig read_record(sim::Config& config, bool has_directory) {
   record.interval = config.duration("record.interval");
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
     if (!has_directory && config.boolean(key)) {
-      config.fail(key, "there is no directory to write to; give one with -o");
+      config.fail(key, "is written to a directory, which `marti run` has with -o");
     }
   }
   if (!record.timeline) {

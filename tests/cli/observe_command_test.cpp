@@ -62,7 +62,7 @@ TEST(ObserveCommand, RecordingChangesNoResultAndNeedsADirectory) {
   EXPECT_EQ(a["machine"], b["machine"]);
   EXPECT_EQ(a["figures"], b["figures"]);
   for (const char* key : {"record.timeline", "record.heat_maps"}) {
-    expect_refused("run " + small_run + " --set " + key + "=true", "give one with -o");
+    expect_refused("run " + small_run + " --set " + key + "=true", "which `marti run` has with -o");
   }
   expect_refused("run " + small_run + " --set record.timeline_events=5 -o " + quoted(plain),
                  "record.timeline = false");

@@ -2,6 +2,7 @@
 // is kept of a frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,28 +19,18 @@
 
 namespace marti::studies::sweep {
 
-/// Some waits of a machine, log-scaled. Only buckets that hold something.
-struct SweepHistogram {
-  std::string what;  ///< one of sweep_histogram_names()
-  struct Bucket {
-    std::int64_t lowest = 0;  ///< ps
-    std::int64_t highest = 0;
-    std::int64_t count = 0;
-    bool operator==(const Bucket&) const = default;
-  };
-  std::vector<Bucket> buckets;
-  bool operator==(const SweepHistogram&) const = default;
-};
+/// The waits of a machine whose histograms are kept.
+inline constexpr std::array<std::string_view, 4> histogram_names = {"interconnect_wait", "bank_wait",
+                                                                    "network_wait", "l2_wait"};
 
 struct SweepRow {
   figures::Counts counters;  ///< one for each of counted_figures()
-  std::vector<SweepHistogram> histograms;
+  /// For each of histogram_names the buckets that hold something, ascending, as JSON: [[lowest, highest,
+  /// count], ...] in ps; empty where the machine has no such waits.
+  std::array<std::string, histogram_names.size()> histograms{};
   std::vector<run::IntervalRow> intervals{};  ///< with record.interval
   bool operator==(const SweepRow&) const = default;
 };
-
-/// Names of the histograms that a row can have.
-[[nodiscard]] std::span<const std::string_view> sweep_histogram_names();
 
 /// Throws InternalError for a sum that does not fit.
 [[nodiscard]] SweepRow sweep_row(const processors::machine::MachineConfig& machine,

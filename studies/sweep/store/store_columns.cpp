@@ -11,6 +11,7 @@
 #include "studies/run/frame_figures.h"
 #include "studies/run/record/interval_figures.h"
 #include "studies/sweep/plan/axis_text.h"
+#include "studies/sweep/plan/sweep_row.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::sweep {
@@ -83,15 +84,6 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
       {"machines", "frame", "", "the frame it is timed on"},
       {"machine_sections", "machine", "", "the machine"},
       {"machine_sections", "section", "", "a section of its settings"},
-      {"waits", "id", "", "number of a kind of wait"},
-      {"waits", "name", "", "its name"},
-      {"buckets", "lowest", "ps", "the shortest wait of a bucket"},
-      {"buckets", "highest", "ps", "the longest"},
-      {"wait_buckets", "machine", "", "the machine"},
-      {"wait_buckets", "wait", "", "the kind of wait"},
-      {"wait_buckets", "lowest", "ps", "the shortest wait of the bucket"},
-      {"wait_buckets", "highest", "ps", "the longest, where it is not that of table buckets"},
-      {"wait_buckets", "count", "1", "waits in the bucket"},
       {"compare", "machine", "", "the machine that all are compared with"},
       {"question", "position", "1", "order within the configuration"},
       {"question", "kind", "", "answer, table or claim"},
@@ -119,7 +111,11 @@ std::vector<StoreColumn> store_columns(std::span<const std::string> axes) {
       {"histograms", "highest", "ps", "the longest"},
       {"histograms", "count", "1", "waits in the bucket"},
       {"results", "machine", "", "the machine"},
-      {"results", "checksum", "", "of the row and its histograms"}};
+      {"results", "checksum", "", "of the row and its intervals"}};
+  for (const std::string_view name : histogram_names) {
+    all.push_back({"results", std::string(name) + "_histogram", "ps",
+                   "waits as JSON: [lowest, highest, count] of each bucket that holds some"});
+  }
   for (const figures::FigureEntry& figure : figures::counted_figures()) {
     all.push_back(column_of("results", figure));
   }

@@ -111,8 +111,8 @@ void SweepStore::merge(const fs::path& part) {
           connection_->value<std::int64_t>("SELECT MAX(id) FROM main.host_sessions").value_or(0);
       copy_results(*connection_, frame_results, "frames", {"frame_results", "frame_notes", "host_frames"},
                    sessions);
-      copy_results(*connection_, machine_results, "machines",
-                   {"results", "wait_buckets", "intervals", "host_machines"}, sessions);
+      copy_results(*connection_, machine_results, "machines", {"results", "intervals", "host_machines"},
+                   sessions);
       connection_->execute(fmt::format(
           "INSERT INTO main.host_sessions SELECT id + {}, began, ended, host, process, processor, system, "
           "threads FROM part.host_sessions",

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "sim/error.h"
-#include "sim/statistics.h"
 #include "studies/sweep/store/store_schema.h"
 
 namespace marti::studies::sweep {
@@ -48,19 +47,11 @@ const tables::Cell no_checksum_yet;
 // In the table of intervals.
 constexpr std::size_t first_interval_counter = 4 + processors::walk::node_states;
 
-// Whether the bounds of a bucket are those that a log-scaled histogram gives it.
-bool is_usual(const SweepHistogram::Bucket& bucket) {
-  const std::size_t number = sim::LogHistogram::bucket_of(bucket.lowest);
-  return sim::LogHistogram::lowest_of(number) == bucket.lowest &&
-         sim::LogHistogram::highest_of(number) == bucket.highest;
-}
-
 }  // namespace
 
 RowWriter::RowWriter(tables::SqliteConnection& connection)
     : result_(connection,
               tables::insert_sql("results", figures::counted_figures().size() + first_result_counter)),
-      bucket_(connection, tables::insert_sql("wait_buckets", 5)),
       interval_(connection,
                 tables::insert_sql("intervals", first_interval_counter + run::counted_in_intervals().size())),
       frame_(connection,
@@ -73,17 +64,11 @@ void RowWriter::add(std::int64_t machine, const SweepRow& row) {
   sim::ensure(row.counters.size() == figures::counted_figures().size(),
               "a row has another number of counters");
   std::vector<tables::Cell> cells = {machine, no_checksum_yet};
+  for (const std::string& histogram : row.histograms) {
+    cells.push_back(histogram.empty() ? tables::Cell() : tables::Cell(histogram));
+  }
   cells.insert(cells.end(), row.counters.begin(), row.counters.end());
   result_.run(cells);
-  const auto names = sweep_histogram_names();
-  for (const SweepHistogram& histogram : row.histograms) {
-    const auto name = std::ranges::find(names, histogram.what);
-    sim::ensure(name != names.end(), "a row has an unknown histogram");
-    for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
-      const auto highest = is_usual(bucket) ? std::nullopt : std::optional(bucket.highest);
-      bucket_.run({machine, name - names.begin(), bucket.lowest, highest, bucket.count});
-    }
-  }
   for (std::size_t ordinal = 0; ordinal < row.intervals.size(); ++ordinal) {
     const run::IntervalRow& interval = row.intervals[ordinal];
     std::vector<tables::Cell> own = {machine, ordinal, interval.from, interval.to};
@@ -112,10 +97,6 @@ void RowWriter::add(std::int64_t frame, const FrameRow& row) {
 
 RowReader::RowReader(tables::SqliteConnection& connection)
     : result_(connection, "SELECT * FROM results WHERE machine = ?"),
-      buckets_(connection,
-               "SELECT w.name, h.lowest, COALESCE(h.highest, b.highest), h.count FROM wait_buckets h "
-               "JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest "
-               "WHERE h.machine = ? ORDER BY h.wait, h.lowest"),
       intervals_(connection, "SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal"),
       frame_(connection, "SELECT * FROM frame_results WHERE frame = ?"),
       notes_(connection, "SELECT note FROM frame_notes WHERE frame = ? ORDER BY ordinal"),
@@ -129,15 +110,13 @@ std::optional<SweepRow> RowReader::find_machine(std::int64_t machine) {
   }
   SweepRow row;
   row.counters = counters_at(result_, result_places_);
-  result_.reset();
-  buckets_.with({machine});
-  while (buckets_.next()) {
-    const std::string what = buckets_.text(0);
-    if (row.histograms.empty() || row.histograms.back().what != what) {
-      row.histograms.push_back({what, {}});
-    }
-    row.histograms.back().buckets.push_back({buckets_.integer(1), buckets_.integer(2), buckets_.integer(3)});
+  for (std::size_t i = 0; i < row.histograms.size(); ++i) {
+    const tables::Cell cell =
+        result_.cell(static_cast<int>(first_result_counter - row.histograms.size() + i));
+    const auto* const text = std::get_if<std::string>(&cell);
+    row.histograms[i] = text == nullptr ? std::string() : *text;
   }
+  result_.reset();
   intervals_.with({machine});
   while (intervals_.next()) {
     run::IntervalRow& interval = row.intervals.emplace_back();

@@ -21,7 +21,6 @@ class RowWriter {
 
  private:
   tables::SqliteStatement result_;
-  tables::SqliteStatement bucket_;
   tables::SqliteStatement interval_;
   tables::SqliteStatement frame_;
   tables::SqliteStatement note_;
@@ -40,7 +39,6 @@ class RowReader {
 
  private:
   tables::SqliteStatement result_;
-  tables::SqliteStatement buckets_;
   tables::SqliteStatement intervals_;
   tables::SqliteStatement frame_;
   tables::SqliteStatement notes_;

@@ -1,5 +1,7 @@
 #include "studies/sweep/store/store_schema.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -9,7 +11,6 @@
 
 #include "processors/cost/accounting.h"
 #include "sim/error.h"
-#include "sim/statistics.h"
 #include "studies/host/program_build.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/store/store_columns.h"
@@ -20,7 +21,7 @@ namespace marti::studies::sweep {
 namespace {
 
 constexpr std::int64_t application = 0x6d617274;  // "mart"
-constexpr std::int64_t format = 6;                // up to 5: without intervals
+constexpr std::int64_t format = 7;                // up to 6: histograms in tables of their own
 
 constexpr std::string_view what_to_do =
     "; give another directory, or remove the file and run the sweep again";
@@ -42,11 +43,6 @@ CREATE TABLE frame_notes (frame INTEGER NOT NULL, ordinal INTEGER NOT NULL, note
 CREATE TABLE machines (id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE, frame INTEGER NOT NULL);
 CREATE TABLE machine_sections (machine INTEGER NOT NULL, section INTEGER NOT NULL,
                                PRIMARY KEY (machine, section)) WITHOUT ROWID;
-CREATE TABLE waits (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE);
-CREATE TABLE buckets (lowest INTEGER PRIMARY KEY, highest INTEGER NOT NULL);
-CREATE TABLE wait_buckets (machine INTEGER NOT NULL, wait INTEGER NOT NULL, lowest INTEGER NOT NULL,
-                           highest INTEGER, count INTEGER NOT NULL,
-                           PRIMARY KEY (machine, wait, lowest)) WITHOUT ROWID;
 CREATE TABLE compare (machine INTEGER NOT NULL);
 CREATE TABLE question (position INTEGER PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL,
                        text TEXT NOT NULL, sql TEXT NOT NULL, place TEXT NOT NULL, agrees TEXT NOT NULL,
@@ -66,10 +62,6 @@ CREATE VIEW machine_settings AS
 CREATE VIEW frame_settings AS
   SELECT f.frame AS frame, s.key AS key, s.value AS value
   FROM frame_sections f JOIN sections c ON c.section = f.section JOIN settings s ON s.id = c.setting;
-CREATE VIEW histograms AS
-  SELECT h.machine AS machine, w.name AS what, h.lowest AS lowest, COALESCE(h.highest, b.highest) AS highest,
-         h.count AS count
-  FROM wait_buckets h JOIN waits w ON w.id = h.wait LEFT JOIN buckets b ON b.lowest = h.lowest;
 )";
 
 bool has_columns(tables::SqliteConnection& connection, const std::string& table, std::size_t first,
@@ -185,8 +177,17 @@ void create_store(tables::SqliteConnection& connection) {
   connection.execute("PRAGMA application_id = " + std::to_string(application) +
                      "; PRAGMA user_version = " + std::to_string(format));
   connection.execute(fixed_tables);
-  connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" +
-                     counters_sql(figures::counted_figures()) + ")");
+  std::string histograms;
+  std::string view;
+  for (const std::string_view name : histogram_names) {
+    histograms += fmt::format(", {}_histogram TEXT", name);
+    view += fmt::format(
+        "{} SELECT machine, '{}' AS what, b.value ->> 0 AS lowest, b.value ->> 1 AS highest, "
+        "b.value ->> 2 AS count FROM results, json_each({}_histogram) AS b",
+        view.empty() ? "" : " UNION ALL", name, name);
+  }
+  connection.execute("CREATE TABLE results (machine INTEGER PRIMARY KEY, checksum INTEGER" + histograms +
+                     counters_sql(figures::counted_figures()) + "); CREATE VIEW histograms AS" + view);
   connection.execute(
       "CREATE TABLE frame_results (frame INTEGER PRIMARY KEY, scene TEXT NOT NULL, scene_hash TEXT NOT NULL, "
       "image_hash TEXT NOT NULL, hit_hash TEXT NOT NULL, checksum INTEGER" +
@@ -196,16 +197,6 @@ void create_store(tables::SqliteConnection& connection) {
   store.run({"format", std::to_string(format)});
   store.run({"version", version});
   store.run({"build", host::build_of_program()});
-  tables::SqliteStatement wait(connection, tables::insert_sql("waits", 2));
-  std::int64_t number = 0;
-  for (const std::string_view name : sweep_histogram_names()) {
-    wait.run({number++, name});
-  }
-  tables::SqliteStatement bucket(connection, tables::insert_sql("buckets", 2));
-  const std::size_t last = sim::LogHistogram::bucket_of(INT64_MAX);
-  for (std::size_t i = 0; i <= last; ++i) {
-    bucket.run({sim::LogHistogram::lowest_of(i), sim::LogHistogram::highest_of(i)});
-  }
 }
 
 void create_points(tables::SqliteConnection& connection, const SweepPlan& plan) {

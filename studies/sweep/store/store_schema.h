@@ -6,12 +6,13 @@
 #include <string>
 
 #include "studies/sweep/plan/sweep_plan.h"
+#include "studies/sweep/plan/sweep_row.h"
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::sweep {
 
 /// Where the counters of the tables begin, after the columns that are no counters.
-inline constexpr std::size_t first_result_counter = 2;
+inline constexpr std::size_t first_result_counter = 2 + histogram_names.size();
 inline constexpr std::size_t first_frame_counter = 6;
 
 /// The file itself. Throws UserError when it is there but is not a whole SQLite database, before SQLite has

@@ -15,9 +15,9 @@ namespace marti::studies::sweep {
 namespace {
 
 // In the order in which they were made. Table `store` is left to the end, as it holds the checksum.
-constexpr std::string_view plan_tables[] = {
-    "provenance",       "columns", "settings", "sections", "frames",  "frame_sections", "machines",
-    "machine_sections", "waits",   "buckets",  "points",   "compare", "question"};
+constexpr std::string_view plan_tables[] = {"provenance", "columns",        "settings", "sections",
+                                            "frames",     "frame_sections", "machines", "machine_sections",
+                                            "points",     "compare",        "question"};
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw sim::UserError(file.string() + ": is damaged: " + what +
@@ -76,10 +76,8 @@ RowSums::RowSums(tables::SqliteConnection& connection, const ResultTable& table)
   for (int i = 0; i < row_.columns(); ++i) {
     checksum_ = row_.column_name(i) == "checksum" ? i : checksum_;
   }
-  for (const std::string_view sql : table.parts) {
-    if (!sql.empty()) {
-      parts_.emplace_back(connection, std::string(sql));
-    }
+  if (!table.part.empty()) {
+    part_.emplace(connection, std::string(table.part));
   }
 }
 
@@ -92,8 +90,8 @@ tables::Cell RowSums::sum_of(const tables::SqliteStatement& row) {
   }
   Digest digest;
   digest.add(bytes.take());
-  for (tables::SqliteStatement& part : parts_) {
-    add_rows(digest, part.with({row.cell(0)}));
+  if (part_) {
+    add_rows(digest, part_->with({row.cell(0)}));
   }
   return static_cast<std::int64_t>(digest.folded());
 }

@@ -1,32 +1,27 @@
 // Checksums of what a store holds, to detect damage.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "studies/tables/sqlite_connection.h"
 
 namespace marti::studies::sweep {
 
-/// A table of results, and what belongs to each of its rows: the histograms and intervals of a machine, the
-/// notes of a frame.
+/// A table of results, and what belongs to each of its rows: the intervals of a machine, the notes of a
+/// frame.
 struct ResultTable {
   std::string_view name;
-  std::string_view id;  ///< its first column
-  /// The SQL that selects, for an id, what belongs to its row; empty: nothing more does.
-  std::array<std::string_view, 2> parts;
+  std::string_view id;    ///< its first column
+  std::string_view part;  ///< the SQL that selects, for an id, what belongs to its row; empty: nothing does
 };
-inline constexpr ResultTable machine_results = {
-    "results",
-    "machine",
-    {"SELECT wait, lowest, highest, count FROM wait_buckets WHERE machine = ? ORDER BY wait, lowest",
-     "SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal"}};
+inline constexpr ResultTable machine_results = {"results", "machine",
+                                                "SELECT * FROM intervals WHERE machine = ? ORDER BY ordinal"};
 inline constexpr ResultTable frame_results = {
-    "frame_results", "frame", {"SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"}};
-inline constexpr ResultTable advice_rows = {"advice", "machine", {}};
+    "frame_results", "frame", "SELECT ordinal, note FROM frame_notes WHERE frame = ? ORDER BY ordinal"};
+inline constexpr ResultTable advice_rows = {"advice", "machine", ""};
 
 /// The checksums of one table of results. Each covers the values of a row as they stand in the store, with
 /// their types, and what belongs to the row. So a program that has other counters can check a store, too.
@@ -45,7 +40,7 @@ class RowSums {
   tables::SqliteConnection& connection_;
   ResultTable table_;
   tables::SqliteStatement row_;
-  std::vector<tables::SqliteStatement> parts_;
+  std::optional<tables::SqliteStatement> part_;
   tables::SqliteStatement seal_;
   int checksum_ = -1;  // the column that holds it
 };

@@ -65,7 +65,8 @@ SweepReader::SweepReader(const std::filesystem::path& file)
   figures_ = columns_of(connection_, "summary");
   summary_figures_ = figures_.size();
   for (const std::string& counter : columns_of(connection_, "results")) {
-    if (counter != "checksum" && std::ranges::find(figures_, counter) == figures_.end()) {
+    if (counter != "checksum" && !counter.ends_with("_histogram") &&
+        std::ranges::find(figures_, counter) == figures_.end()) {
       figures_.push_back(counter);
     }
   }

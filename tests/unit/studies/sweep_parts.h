@@ -1,12 +1,13 @@
 // Plans and rows made up for tests of the store.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <optional>
 #include <random>
 #include <string>
 
-#include "sim/statistics.h"
 #include "studies/sweep/plan/sweep_plan.h"
 #include "studies/sweep/plan/sweep_row.h"
 #include "studies/sweep/store/sweep_store.h"
@@ -74,18 +75,15 @@ inline studies::sweep::SweepRow random_sweep_row(Random& random) {
     }
   }
   row.counters[0] = 1 + static_cast<std::int64_t>(random() % 1000000);
-  for (const std::string_view name : studies::sweep::sweep_histogram_names()) {
-    sim::LogHistogram waits;
-    for (std::uint64_t left = random() % 30; left > 0; --left) {
-      waits.add(static_cast<std::int64_t>(random() >> (1 + random() % 63)));
+  for (std::string& histogram : row.histograms) {
+    std::int64_t lowest = 0;
+    for (std::uint64_t left = random() % 5; left > 0; --left) {
+      const auto highest = lowest + static_cast<std::int64_t>(random() % 1000);
+      histogram +=
+          fmt::format("{}[{},{},{}]", histogram.empty() ? '[' : ',', lowest, highest, 1 + random() % 99);
+      lowest = highest + 1;
     }
-    if (waits.count() == 0) {
-      continue;
-    }
-    row.histograms.push_back({std::string(name), {}});
-    for (const auto& bucket : waits.buckets()) {
-      row.histograms.back().buckets.push_back({bucket.lowest, bucket.highest, bucket.count});
-    }
+    histogram += histogram.empty() ? "" : "]";
   }
   return row;
 }

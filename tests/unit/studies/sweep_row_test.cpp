@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "processors/replay/bounds.h"
@@ -36,10 +37,10 @@ std::map<std::string, std::optional<Count>> named(const SweepRow& row) {
 
 std::int64_t waits_in(const SweepRow& row, std::string_view what) {
   std::int64_t count = 0;
-  for (const SweepHistogram& histogram : row.histograms) {
-    for (const SweepHistogram::Bucket& bucket : histogram.buckets) {
-      count += histogram.what == what ? bucket.count : 0;
-    }
+  const std::string& text = row.histograms.at(
+      static_cast<std::size_t>(std::ranges::find(histogram_names, what) - histogram_names.begin()));
+  for (const auto& bucket : nlohmann::json::parse(text.empty() ? "[]" : text)) {
+    count += bucket.at(2).get<std::int64_t>();
   }
   return count;
 }

@@ -270,8 +270,8 @@ class HotJournal : public KilledStore {
       SqliteConnection connection(file_, SqliteConnection::Access::write);
       // A cache of few pages: the file is changed before the end of the transaction.
       connection.execute(
-          "PRAGMA cache_size = 1; BEGIN; UPDATE results SET hits = 1; DELETE FROM wait_buckets;"
-          "UPDATE buckets SET highest = 7; UPDATE settings SET value = value || 'x';");
+          "PRAGMA cache_size = 1; BEGIN; UPDATE results SET hits = 1;"
+          "UPDATE columns SET description = 'x'; UPDATE settings SET value = value || 'x';");
       kill(getpid(), SIGKILL);
     });
     EXPECT_TRUE(child.killed);
