@@ -20,9 +20,8 @@ const commands = {
   ],
   sweep: ["sweep", join(configs, "sweep-small.toml")],
   study: [
-    ...["study", "paper", join(configs, "paper.toml")],
-    ...set(["image.width=24", "image.height=16", 'paper.scenes=["tetra:2"]', 'paper.run_scenes=["teapot:2:pot"]']),
-    ...set(["paper.run_depths=[2]"]),
+    ...["study", "frames", join(configs, "animation.toml")],
+    ...set(["image.width=16", "image.height=12", "frames.count=2", "frames.rate=2"]),
   ],
 };
 

@@ -106,7 +106,7 @@ def without_advice(text, shown):
     """A run takes twice as long when it measures what would help, which nobody looks at who is not shown it."""
     if not re.match(r"marti run (?!.*(-o |--json|--what-helps|--within|--save-log|>))", text):
         return text
-    return text if not shown or any("helps" in line for _, line in shown) else with_settings(text, "--no-what-helps")
+    return text if not shown or any("helps" in line or line.startswith("answer") for _, line in shown) else with_settings(text, "--no-what-helps")
 
 
 def is_synopsis(text):
