@@ -26,26 +26,15 @@ class LinkTimes {
   /// A message takes `links` links that have consecutive numbers; at its end `crossing.head` is the time at
   /// which the head has crossed the last.
   [[gnu::always_inline]] void take(std::size_t first, std::uint32_t links, Crossing& crossing) {
-    if (links < many) [[likely]] {
-      take_one_by_one(free_at_.data() + first, links, crossing);
-    } else {
-      take_many(free_at_.data() + first, links, crossing);
-    }
-  }
-
- private:
-  // From so many links on, several at a time are faster than one by one.
-  static constexpr std::uint32_t many = 12;
-
-  static void take_one_by_one(std::uint64_t* free_at, std::size_t links, Crossing& crossing) {
-    for (std::size_t link = 0; link < links; ++link) {
+    std::uint64_t* const free_at = free_at_.data() + first;
+    for (std::uint32_t link = 0; link < links; ++link) {
       const std::uint64_t begin = std::max(crossing.head, free_at[link]);
       free_at[link] = begin + crossing.held;
       crossing.head = begin + crossing.hop;
     }
   }
-  static void take_many(std::uint64_t* free_at, std::size_t links, Crossing& crossing);
 
+ private:
   sim::LargeVector<std::uint64_t> free_at_;
 };
 

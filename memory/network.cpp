@@ -1,6 +1,9 @@
 #include "memory/network.h"
 
+#include <type_traits>
+
 #include "memory/beats.h"
+#include "memory/line_times.h"
 #include "memory/link_times.h"
 #include "memory/routes.h"
 #include "sim/error.h"
@@ -58,16 +61,21 @@ class IdealNetwork final : public CountedNetwork<IdealNetwork> {
   }
 };
 
-// With `holds_hop` a link is also held for the latency, so that only one message is on its way at a time.
-template <class Routes, bool holds_hop>
-class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_hop>> {
-  using Base = CountedNetwork<RoutedNetwork<Routes, holds_hop>>;
+// A message takes many links in a row only where lines are long; from so many nodes on a mesh is kept in
+// pieces.
+constexpr std::uint32_t nodes_of_long_lines = 1024;
+
+// `Times` is LinkTimes or LineTimes. With `holds_hop` a link is also held for the latency, so that only one
+// message is on its way at a time.
+template <class Routes, class Times, bool holds_hop>
+class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, Times, holds_hop>> {
+  using Base = CountedNetwork<RoutedNetwork<Routes, Times, holds_hop>>;
   using Base::hop_;
   using Base::statistics_;
 
  public:
   RoutedNetwork(const NetworkConfig& config, std::uint32_t nodes)
-      : Base(config, nodes), routes_(nodes), links_(routes_.table_size()) {
+      : Base(config, nodes), routes_(nodes), links_(make_times(routes_.table_size(), hop_)) {
     statistics_.links = routes_.links();
   }
   Ticks unloaded(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) const override {
@@ -95,8 +103,16 @@ class RoutedNetwork final : public CountedNetwork<RoutedNetwork<Routes, holds_ho
   }
 
  private:
+  static Times make_times(std::size_t links, Ticks hop) {
+    if constexpr (std::is_same_v<Times, LineTimes>) {
+      return LineTimes(links, static_cast<std::uint64_t>(hop));
+    } else {
+      return LinkTimes(links);
+    }
+  }
+
   Routes routes_;
-  LinkTimes links_;
+  Times links_;
 };
 
 }  // namespace
@@ -110,15 +126,18 @@ std::unique_ptr<Network> make_network(const NetworkConfig& config, std::uint32_t
     case NetworkKind::ideal:
       return std::make_unique<IdealNetwork>(config, nodes);
     case NetworkKind::bus:
-      return std::make_unique<RoutedNetwork<BusRoutes, true>>(config, nodes);
+      return std::make_unique<RoutedNetwork<BusRoutes, LinkTimes, true>>(config, nodes);
     case NetworkKind::crossbar:
-      return std::make_unique<RoutedNetwork<CrossbarRoutes, false>>(config, nodes);
+      return std::make_unique<RoutedNetwork<CrossbarRoutes, LinkTimes, false>>(config, nodes);
     case NetworkKind::hypercube:
-      return std::make_unique<RoutedNetwork<WithHost<HypercubeRoutes>, false>>(config, nodes);
+      return std::make_unique<RoutedNetwork<WithHost<HypercubeRoutes>, LinkTimes, false>>(config, nodes);
     case NetworkKind::mesh:
       break;
   }
-  return std::make_unique<RoutedNetwork<WithHost<MeshRoutes>, false>>(config, nodes);
+  if (nodes < nodes_of_long_lines) {
+    return std::make_unique<RoutedNetwork<WithHost<MeshRoutes>, LinkTimes, false>>(config, nodes);
+  }
+  return std::make_unique<RoutedNetwork<WithHost<MeshRoutes>, LineTimes, false>>(config, nodes);
 }
 
 std::uint64_t network_bytes(const NetworkConfig& config, std::uint32_t nodes) {
@@ -139,7 +158,7 @@ std::uint64_t network_bytes(const NetworkConfig& config, std::uint32_t nodes) {
       links = WithHost<HypercubeRoutes>(nodes).table_size();
       break;
   }
-  return links * sizeof(Ticks);
+  return LineTimes::bytes(links);
 }
 
 }  // namespace marti::memory

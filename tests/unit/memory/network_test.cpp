@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "memory/line_times.h"
+#include "memory/link_times.h"
 #include "memory/routes.h"
 #include "sim/error.h"
 
@@ -294,6 +296,39 @@ RC_GTEST_PROP(Network, RandomTrafficIsFirstComeFirstServedOnEveryLink, (std::uin
     RC_ASSERT(counted.busy == oracle.busy);
     RC_ASSERT(counted.waits.count == messages);
     RC_ASSERT(counted.waits.sum == waits);
+  }
+}
+
+// Lines of links in pieces beside a time for each link: messages of several lengths, among them such that
+// wait at many links, over lines that begin and end within words of bits and at their ends.
+RC_GTEST_PROP(Network, LongLinesKeepTheTimeOfEveryLink, (std::uint64_t seed)) {
+  std::mt19937_64 random(seed);
+  const auto pick = [&](std::uint64_t lo, std::uint64_t hi) { return lo + random() % (hi - lo + 1); };
+  const std::size_t line = pick(1, 200);
+  const std::size_t lines = pick(1, 4);
+  const std::uint64_t hop = pick(0, 3) == 0 ? pick(0, 3) : pick(10, 100);
+  LineTimes pieces(line * lines, hop);
+  LinkTimes links(line * lines);
+  std::uint64_t now = 0;
+  const std::uint64_t step = pick(1, 2000);
+  for (int message = 0; message < 2000; ++message) {
+    now += pick(0, step);
+    const std::size_t from = pick(0, line - 1);
+    const std::size_t first = line * pick(0, lines - 1) + from;
+    const auto count = static_cast<std::uint32_t>(pick(0, 5) == 0 ? line - from : pick(0, line - from));
+    const std::uint64_t held = pick(0, 20) * 30;
+    Crossing one = {now, hop, held};
+    Crossing other = {now, hop, held};
+    pieces.take(first, count, one);
+    links.take(first, count, other);
+    RC_ASSERT(one.head == other.head);
+  }
+  for (std::size_t link = 0; link < line * lines; ++link) {
+    Crossing one = {0, hop, 1};
+    Crossing other = {0, hop, 1};
+    pieces.take(link, 1, one);
+    links.take(link, 1, other);
+    RC_ASSERT(one.head == other.head);
   }
 }
 
