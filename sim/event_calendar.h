@@ -17,8 +17,8 @@ namespace marti::sim {
 /// events, whose first lies in the table of days itself, because most days have one event.
 class EventCalendar {
  public:
-  /// The table of more days would not stay in the host's caches.
-  static constexpr std::uint32_t most_days = 65536;
+  /// The table of more days would not stay near the host's processor.
+  static constexpr std::uint32_t most_days = 4096;
   static_assert(most_days <= NumberSet::most);
 
   /// `days` is a power of two, at most most_days.

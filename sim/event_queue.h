@@ -12,32 +12,38 @@
 #include "sim/event_heap.h"
 #include "sim/event_lane.h"
 #include "sim/event_tree.h"
+#include "sim/later_years.h"
 
 namespace marti::sim {
 
 /// A priority queue of events: a calendar for the near future, a lane for events that are pushed nearly in
 /// order, and a heap for what fits into neither. The length of the calendar's days follows from how far ahead
-/// events are pushed, so that pushing and popping take constant time. Where there are few components, a tree
-/// has one event of each, and the other three only what the tree has no place for. What is popped does not
-/// depend on where events are kept: it is the earliest of all four.
+/// events are pushed, so that pushing and popping take constant time. Where there are many components, the
+/// calendar is of one year, and what comes in later years is kept apart until its year begins. Where there
+/// are few, a tree has one event of each, and the others only what the tree has no place for. What is popped
+/// does not depend on where events are kept: it is the earliest of all.
 ///
 /// An event that is pushed must not be earlier than the one popped last.
 class EventQueue {
  public:
-  EventQueue() : tree_(0), calendar_(fewest_days) {}
+  EventQueue() : tree_(0), calendar_(fewest_days), later_years_(1) {}
 
   /// Bytes of host memory for each pending event, and beside them for a queue of so many.
   static constexpr std::size_t bytes_an_event = EventCalendar::bytes_an_event;
   [[nodiscard]] static std::size_t bytes_of_days(std::size_t events) {
-    return EventCalendar::bytes_a_day * days_for(events);
+    return EventCalendar::bytes_a_day * days_for(events) + LaterYears::bytes_a_year * years_for(events);
   }
 
   [[nodiscard]] bool empty() const { return size() == 0; }
   [[nodiscard]] std::size_t size() const {
-    return tree_.size() + lane_.size() + calendar_.size() + heap_.size();
+    return tree_.size() + lane_.size() + calendar_.size() + later_years_.size() + heap_.size();
   }
   /// Chooses the number of days for so many pending events. The queue must be empty.
-  void reserve(std::size_t events) { calendar_ = EventCalendar(days_for(events)); }
+  void reserve(std::size_t events) {
+    calendar_ = EventCalendar(days_for(events));
+    later_years_ = LaterYears(years_for(events));
+    set_shift(0);
+  }
   /// reserve() for events of components below `components` that seldom have more than one each.
   void reserve_for(std::size_t components) {
     tree_ = EventTree(components <= EventTree::most ? static_cast<std::uint32_t>(components) : 0);
@@ -73,7 +79,9 @@ class EventQueue {
   [[nodiscard]] bool has_no_other() const { return first_.order == Event::never().order; }
   /// Whether so many events are pending that the host's caches may not hold all that belongs to them. Those
   /// of the heap, of which there are few, are not counted.
-  [[nodiscard]] bool many_pending() const { return lane_.size() + calendar_.size() > many; }
+  [[nodiscard]] bool many_pending() const {
+    return lane_.size() + calendar_.size() + later_years_.size() > many;
+  }
 
   /// Calls later(event) for some events that will be popped soon unless earlier ones are pushed, and
   /// soon(event) for some that may be next.
@@ -110,6 +118,9 @@ class EventQueue {
     last_ = event.time;
     if (calendar_.front() < heap_first_) [[likely]] {
       calendar_.pop();
+      if (calendar_.size() == 0 && later_years_.size() != 0) [[unlikely]] {
+        open_next_year();
+      }
     } else {
       heap_.pop();
       heap_first_ = heap_.front();
@@ -122,12 +133,11 @@ class EventQueue {
   static constexpr std::size_t many = 2048;
   static constexpr std::uint32_t fewest_days = 256;
   static constexpr std::uint64_t tuned_after = 1024;  // pushed events
+  static constexpr std::uint32_t farther = 4;
 
   [[gnu::always_inline]] void push_outside(Event event) {
     ahead_ += static_cast<std::uint64_t>(event.time - last_);
-    if (!calendar_.push(event, last_)) [[unlikely]] {
-      push_into_heap(event);
-    }
+    keep(event);
     if (event < first_) {
       first_ = event;
     }
@@ -136,38 +146,84 @@ class EventQueue {
     }
   }
 
+  [[gnu::always_inline]] void keep(Event event) {
+    if (later_years_.on()) [[unlikely]] {
+      keep_by_year(event);
+    } else if (!calendar_.push(event, last_)) [[unlikely]] {
+      push_into_heap(event);
+    }
+  }
+
+  // While the calendar is empty, so are the years after it. So what lies in these never comes before an event
+  // of the calendar.
+  [[gnu::noinline]] void keep_by_year(Event event) {
+    const std::uint64_t year = later_years_.year_of(event.time);
+    if (calendar_.size() == 0 && year > later_years_.open_year()) {
+      later_years_.open(year);
+    }
+    const bool kept = year == later_years_.open_year()  ? calendar_.push(event, later_years_.begin())
+                      : year > later_years_.open_year() ? later_years_.push(event)
+                                                        : false;
+    if (!kept) {
+      push_into_heap(event);
+    }
+  }
+
+  [[gnu::noinline]] void open_next_year() {
+    later_years_.open_next([this](Event event) {
+      if (!calendar_.push(event, later_years_.begin())) {
+        push_into_heap(event);
+      }
+    });
+  }
+
   void push_into_heap(Event event) {
     heap_.push(event);
     heap_first_ = heap_.front();
   }
 
   // Four to eight for each event, so that most days have at most one.
+  [[nodiscard]] static std::size_t wanted_days(std::size_t events) {
+    constexpr std::size_t most = std::size_t{EventCalendar::most_days} * LaterYears::most / farther;
+    return std::clamp<std::size_t>(events >= most ? most : 4 * std::bit_ceil(events), fewest_days, most);
+  }
   [[nodiscard]] static std::uint32_t days_for(std::size_t events) {
-    constexpr std::size_t most = EventCalendar::most_days;
-    const std::size_t days = events >= most ? most : 4 * std::bit_ceil(events);
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(days, fewest_days, most));
+    return static_cast<std::uint32_t>(std::min<std::size_t>(wanted_days(events), EventCalendar::most_days));
+  }
+  [[nodiscard]] static std::uint32_t years_for(std::size_t events) {
+    const std::size_t years = wanted_days(events) / days_for(events);
+    return static_cast<std::uint32_t>(years == 1 ? 1 : farther * years);
   }
 
-  // Chooses the length of a day so that the open days are four to sixteen times as long as events are pushed
-  // ahead on average.
+  // Calendar and years must be empty.
+  void set_shift(unsigned shift) {
+    calendar_.set_shift(shift);
+    const auto year = shift + static_cast<unsigned>(std::countr_zero(calendar_.days()));
+    later_years_.set_shift(std::min(year, 63U), last_);
+  }
+
+  // Chooses the length of a day so that all days are four to sixteen times as long as events are pushed ahead
+  // on average, and with later years, which cost little, `farther` times that.
   void tune() {
-    const double wanted = 4.0 * static_cast<double>(ahead_) / static_cast<double>(tuned_after_last_) /
-                          static_cast<double>(calendar_.days());
+    const double ahead = static_cast<double>(ahead_) / static_cast<double>(tuned_after_last_);
+    const double wanted = 4.0 * ahead * (later_years_.on() ? farther : 1) /
+                          (static_cast<double>(calendar_.days()) * static_cast<double>(later_years_.years()));
     const auto shift =
         wanted < 1.0 ? 0U : static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(wanted)));
     if (shift > calendar_.shift() || shift + 1 < calendar_.shift()) {
       std::vector<Event> events;
-      events.reserve(calendar_.size());
-      while (calendar_.size() != 0) {
+      events.reserve(calendar_.size() + later_years_.size());
+      for (; calendar_.size() != 0; calendar_.pop()) {
         events.push_back(calendar_.front());
-        calendar_.pop();
       }
-      calendar_.set_shift(shift);
+      while (later_years_.size() != 0) {
+        later_years_.open_next([&events](Event event) { events.push_back(event); });
+      }
+      set_shift(shift);
       for (const Event& event : events) {
-        if (!calendar_.push(event, last_)) {
-          push_into_heap(event);
-        }
+        keep(event);
       }
+      first_ = std::min(calendar_.front(), heap_first_);
     }
     ahead_ = 0;
     tuned_after_last_ = std::max<std::uint64_t>(tuned_after, 8 * size());
@@ -177,6 +233,7 @@ class EventQueue {
   EventTree tree_;
   EventLane lane_;
   EventCalendar calendar_;
+  LaterYears later_years_;
   EventHeap heap_;
   Event heap_first_ = Event::never();  // the earliest of the heap
   Event first_ = Event::never();       // the earliest of calendar and heap
