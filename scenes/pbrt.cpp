@@ -223,14 +223,23 @@ class Reader {
   }
 
   void add_shape(const std::string& kind, const Parameters& parameters) {
-    const std::optional<std::uint32_t> material = materials_.in_scene(state_.material, state_.emission);
-    if (!material) {
-      left_out_.features["surfaces of media"] += 1;
-      return;
-    }
-    left_out_.features["cut-outs (alpha)"] += parameters.find("alpha") != nullptr ? 1U : 0U;
     std::optional<Scene> shape = scene_of_shape(kind, parameters, file_, text_, left_out_);
     if (!shape) {
+      return;
+    }
+    CutOut cut_out = materials_.cut_out_of(parameters);
+    if (cut_out.everywhere()) {
+      left_out_.features["shapes that are cut out as a whole"] += 1;
+      return;
+    }
+    if (cut_out.texture == no_texture || shape->uvs.empty()) {
+      left_out_.features["cut-outs of shapes without texture coordinates"] += cut_out.asks() ? 1U : 0U;
+      cut_out = {};
+    }
+    const std::optional<std::uint32_t> material =
+        materials_.in_scene(state_.material, state_.emission, cut_out);
+    if (!material) {
+      left_out_.features["surfaces of media"] += 1;
       return;
     }
     left_out_.features["textures on shapes without texture coordinates"] +=

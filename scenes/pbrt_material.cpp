@@ -73,10 +73,23 @@ void PbrtMaterials::add_texture(std::string name, std::string kind, Parameters p
   textures_.insert_or_assign(std::move(name), KnownTexture{std::move(kind), std::move(parameters)});
 }
 
-std::optional<std::uint32_t> PbrtMaterials::in_scene(std::size_t material, const glm::dvec3& emission) {
+CutOut PbrtMaterials::cut_out_of(const Parameters& shape) {
+  const Parameter* const alpha = shape.find("alpha");
+  if (alpha == nullptr) {
+    return {};
+  }
+  const Tint tint = alpha->type == "texture"
+                        ? texture(shape.text("alpha"), shape, true, 0)
+                        : Tint{glm::dvec3(shape.number("alpha", 1.0, 0.0, 1.0)), no_texture};
+  return {std::min(1.0, (tint.color.x + tint.color.y + tint.color.z) / 3.0), cutoff_of_blending,
+          tint.texture};
+}
+
+std::optional<std::uint32_t> PbrtMaterials::in_scene(std::size_t material, const glm::dvec3& emission,
+                                                     const CutOut& cut_out) {
   Known& known = known_[material];
-  const std::array<double, 3> light{emission.x, emission.y, emission.z};
-  if (const auto same = known.in_scene.find(light); same != known.in_scene.end()) {
+  const std::tuple look{std::array{emission.x, emission.y, emission.z}, cut_out.alpha, cut_out.texture};
+  if (const auto same = known.in_scene.find(look); same != known.in_scene.end()) {
     return same->second;
   }
   std::optional<Material> made = convert(known, 0);
@@ -86,10 +99,11 @@ std::optional<std::uint32_t> PbrtMaterials::in_scene(std::size_t material, const
   file_.take_memory(2 * (sizeof(Material) + known.name.size()), "its materials take");
   made->name = known.name;
   made->emission = emission;
+  made->cut_out = cut_out;
   used_ += known.in_scene.empty() ? 1U : 0U;
   const auto place = static_cast<std::uint32_t>(scene_.materials.size());
   scene_.materials.push_back(*std::move(made));
-  known.in_scene.emplace(light, place);
+  known.in_scene.emplace(look, place);
   return place;
 }
 
@@ -106,11 +120,11 @@ std::optional<Material> PbrtMaterials::convert(const Known& known, int depth) {
     left_out_.features["light that diffuse materials let through"] +=
         parameters.find("transmittance") != nullptr ? 1U : 0U;
     const glm::dvec3 grey(known.type == "diffusetransmission" ? 0.25 : 0.5);
-    const Tint tinted = tint(parameters, name_of_diffuse(parameters), grey);
+    const Tint tinted = tint(parameters, name_of_diffuse(parameters), grey, false);
     material.color = tinted.color;
     material.texture = tinted.texture;
   } else if (is_one_of(coated, known.type)) {
-    const Tint tinted = tint(parameters, name_of_diffuse(parameters), glm::dvec3(0.5));
+    const Tint tinted = tint(parameters, name_of_diffuse(parameters), glm::dvec3(0.5), false);
     material.color = tinted.color;
     material.texture = tinted.texture;
     material.ior = index_of_refraction(parameters, left_out_);
@@ -163,15 +177,16 @@ double PbrtMaterials::roughness(const Parameters& parameters, double otherwise) 
 }
 
 PbrtMaterials::Tint PbrtMaterials::tint(const Parameters& parameters, std::string_view name,
-                                        const glm::dvec3& otherwise, int depth) {
+                                        const glm::dvec3& otherwise, bool is_alpha, int depth) {
   const Parameter* const found = parameters.find(name);
   if (found != nullptr && found->type == "texture") {
-    return texture(parameters.text(name), parameters, depth);
+    return texture(parameters.text(name), parameters, is_alpha, depth);
   }
   return {color_in(parameters, name, otherwise, 1.0, left_out_), no_texture};
 }
 
-PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parameters& by, int depth) {
+PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parameters& by, bool is_alpha,
+                                           int depth) {
   const auto found = textures_.find(name);
   if (found == textures_.end() || depth == most_nested) {
     by.fail(found == textures_.end()
@@ -180,11 +195,11 @@ PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parame
   }
   const auto& [kind, parameters] = found->second;
   if (kind == "constant") {
-    return tint(parameters, "value", glm::dvec3(1.0), depth + 1);
+    return tint(parameters, "value", glm::dvec3(1.0), is_alpha, depth + 1);
   }
   if (kind == "scale") {
-    Tint scaled = tint(parameters, "tex", glm::dvec3(1.0), depth + 1);
-    const Tint by_what = tint(parameters, "scale", glm::dvec3(1.0), depth + 1);
+    Tint scaled = tint(parameters, "tex", glm::dvec3(1.0), is_alpha, depth + 1);
+    const Tint by_what = tint(parameters, "scale", glm::dvec3(1.0), is_alpha, depth + 1);
     scaled.color *= by_what.color;
     scaled.texture = scaled.texture == no_texture ? by_what.texture : scaled.texture;
     return scaled;
@@ -195,18 +210,18 @@ PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parame
       left_out_.features["coordinates of textures that are scaled or mapped, or values that are inverted"] +=
           parameters.find(coordinate) != nullptr ? 1U : 0U;
     }
-    return {glm::dvec3(scale), image(parameters)};
+    return {glm::dvec3(scale), image(parameters, is_alpha)};
   }
   left_out_.replace("textures that are no images, by grey",
                     parameters.place() + ": textures of the kind " + in_quotes(kind) + " are not supported");
   return {glm::dvec3(0.5), no_texture};
 }
 
-std::uint32_t PbrtMaterials::image(const Parameters& parameters) {
+std::uint32_t PbrtMaterials::image(const Parameters& parameters, bool is_alpha) {
   const std::string name = parameters.text("filename");
   const bool clamp = !parameters.text("wrap").empty() && parameters.text("wrap") != "repeat";
   const bool linear = parameters.text("encoding") == "linear";
-  const auto [place, is_new] = images_.try_emplace({name, clamp, linear}, no_texture);
+  const auto [place, is_new] = images_.try_emplace({name, clamp, linear, is_alpha}, no_texture);
   if (!is_new) {
     return place->second;
   }
@@ -220,6 +235,7 @@ std::uint32_t PbrtMaterials::image(const Parameters& parameters) {
       add_image(file_, {name, std::as_bytes(std::span(*bytes))}, decode_, clamp, scene_, left_out_);
   if (place->second != no_texture) {
     scene_.textures[place->second].srgb = !linear;
+    scene_.textures[place->second].grey_is_alpha = is_alpha;
   }
   return place->second;
 }

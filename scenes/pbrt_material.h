@@ -41,9 +41,13 @@ class PbrtMaterials {
   [[nodiscard]] std::size_t named(const std::string& name) const;
   void add_texture(std::string name, std::string kind, Parameters parameters);
 
-  /// Its place among the scene's materials when it emits so much light; nothing for the surface of a medium,
-  /// which no ray sees.
-  [[nodiscard]] std::optional<std::uint32_t> in_scene(std::size_t material, const glm::dvec3& emission);
+  /// Its place among the scene's materials when it emits so much light and has these holes; nothing for the
+  /// surface of a medium, which no ray sees.
+  [[nodiscard]] std::optional<std::uint32_t> in_scene(std::size_t material, const glm::dvec3& emission,
+                                                      const CutOut& cut_out);
+  /// The holes of a shape by its parameter `alpha`, a number or a texture, of which the mean of the colours
+  /// counts. pbrt compares it with a random number for each ray; here a surface is where it is at least 0.5.
+  [[nodiscard]] CutOut cut_out_of(const Parameters& shape);
 
   [[nodiscard]] std::size_t known() const { return known_.size(); }
   [[nodiscard]] std::size_t used() const { return used_; }
@@ -53,7 +57,8 @@ class PbrtMaterials {
     std::string name;
     std::string type;
     Parameters parameters;
-    std::map<std::array<double, 3>, std::uint32_t> in_scene;  // by what it emits
+    /// By what it emits, and by alpha and texture of its holes.
+    std::map<std::tuple<std::array<double, 3>, double, std::uint32_t>, std::uint32_t> in_scene;
   };
   struct KnownTexture {
     std::string kind;
@@ -66,9 +71,9 @@ class PbrtMaterials {
 
   [[nodiscard]] std::optional<Material> convert(const Known& known, int depth);
   [[nodiscard]] Tint tint(const Parameters& parameters, std::string_view name, const glm::dvec3& otherwise,
-                          int depth = 0);
-  [[nodiscard]] Tint texture(const std::string& name, const Parameters& by, int depth);
-  [[nodiscard]] std::uint32_t image(const Parameters& parameters);
+                          bool is_alpha, int depth = 0);
+  [[nodiscard]] Tint texture(const std::string& name, const Parameters& by, bool is_alpha, int depth);
+  [[nodiscard]] std::uint32_t image(const Parameters& parameters, bool is_alpha);
   [[nodiscard]] double roughness(const Parameters& parameters, double otherwise);
 
   const SourceFile& file_;
@@ -80,7 +85,8 @@ class PbrtMaterials {
   std::size_t used_ = 0;
   std::map<std::string, std::size_t> by_name_;
   std::map<std::string, KnownTexture> textures_;
-  std::map<std::tuple<std::string, bool, bool>, std::uint32_t> images_;  // by file, wrap and encoding
+  /// By file, wrap, encoding, and whether they are of holes.
+  std::map<std::tuple<std::string, bool, bool, bool>, std::uint32_t> images_;
 };
 
 }  // namespace marti::scenes::pbrt

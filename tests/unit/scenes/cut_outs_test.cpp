@@ -1,4 +1,4 @@
-// What files say of holes in their triangles: alphaMode of glTF, map_d of OBJ.
+// What files say of holes in their triangles: alphaMode of glTF, map_d of OBJ, alpha of pbrt.
 #include <array>
 #include <span>
 #include <string>
@@ -172,6 +172,41 @@ TEST(ObjCutOuts, FaultsAreReplacedOrRefusedWithFileAndLine) {
   folder.write("m.mtl", "newmtl a\nmap_d -holes a.png\n");
   EXPECT_NE(folder.refusal("a.obj", text, {}, two_texels).find("m.mtl:2: map_d has no option '-holes'"),
             std::string::npos);
+}
+
+TEST(PbrtCutOuts, AreThoseOfTheShapesAlpha) {
+  const testing::SceneFolder folder;
+  folder.write("a.png", "A");
+  const auto open = [&](const std::string& alpha, const std::string& uv = "\"point2 uv\" [ 0 0 1 0 0 1 ]") {
+    return folder.open("a.pbrt",
+                       "WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.png\"\n"
+                       "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n"
+                       "Texture \"s\" \"float\" \"scale\" \"texture tex\" \"t\" \"float scale\" .75\n"
+                       "Material \"diffuse\" \"texture reflectance\" \"c\"\n"
+                       "Shape \"sphere\" Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] " +
+                           uv + alpha,
+                       {}, two_texels);
+  };
+  EXPECT_EQ(open("").materials.size(), 1U);
+  const Scene scene = open("\"texture alpha\" \"t\"");
+  ASSERT_EQ(scene.materials.size(), 2U);
+  EXPECT_FALSE(scene.materials[0].cut_out.asks());
+  const Material& leaf = scene.materials[1];
+  EXPECT_TRUE(leaf.cut_out.asks());
+  EXPECT_EQ(leaf.cut_out.alpha, 1.0);
+  EXPECT_EQ(leaf.cut_out.cutoff, 0.5);
+  EXPECT_TRUE(scene.textures[leaf.cut_out.texture].grey_is_alpha);
+  EXPECT_FALSE(scene.textures[leaf.texture].grey_is_alpha);  // the file is read once more for its colours
+  EXPECT_EQ(open("\"texture alpha\" \"s\"").materials[1].cut_out.alpha, 0.75);
+
+  // Numbers say that all of a shape is there, or nothing of it.
+  EXPECT_EQ(open("\"float alpha\" .5").materials.size(), 1U);
+  const Scene gone = open("\"float alpha\" 0");
+  EXPECT_TRUE(gone.triangles.empty());
+  EXPECT_TRUE(has_note(gone, "1 shapes that are cut out as a whole"));
+  const Scene bare = open("\"texture alpha\" \"t\"", "");
+  EXPECT_FALSE(bare.materials[0].cut_out.asks());
+  EXPECT_TRUE(has_note(bare, "1 cut-outs of shapes without texture coordinates"));
 }
 
 }  // namespace
