@@ -156,7 +156,7 @@ class GltfPoses : public PoseSource {
     skins_.emplace(model_, nodes_);
     Pose pose;
     pose.nodes = gltf::place_nodes(model_, nodes_, {});
-    gltf::KeptMeshes kept(model_, nodes_, pose, animation_.has_value());
+    gltf::KeptMeshes& kept = kept_.emplace(model_, nodes_, pose);
     const gltf::Expanded expanded = gltf::expanded_instances(model_, kept.distinct(nodes_));
     model_.take_memory(expanded.bytes(), "its instances take");
     still_.positions.reserve(expanded.vertices);
@@ -167,6 +167,10 @@ class GltfPoses : public PoseSource {
       if (nodes_[i].mesh >= 0 && !kept.keeps(i)) {
         meshes.add(i, pose);
       }
+    }
+    if (animation_) {
+      instances_ = meshes.instances();
+      ranges_ = meshes.ranges();
     }
     kept.add(meshes, pose, still_);
     if (still_.triangles.empty()) {
@@ -184,8 +188,6 @@ class GltfPoses : public PoseSource {
     morph_targets_ = meshes.morph_targets();
     read_own_surroundings(model_, still_);
     if (animation_) {
-      instances_ = meshes.instances();
-      ranges_ = meshes.ranges();
       pose = pose_at(0.0);
     }
     look(pose, left_out);
@@ -239,7 +241,7 @@ class GltfPoses : public PoseSource {
     return pose;
   }
 
-  /// Places the vertices of a pose. Returns the number of triangles that had to shrink.
+  /// Places the vertices and instances of a pose. Returns the number of triangles that had to shrink.
   std::uint64_t place_vertices(const Pose& pose, Scene& scene) const {
     std::vector<char> bad(scene.positions.size(), 0);
     for (const gltf::VertexInstance& instance : instances_) {
@@ -252,6 +254,7 @@ class GltfPoses : public PoseSource {
         }
       }
     }
+    kept_->move(pose, scene);
     const bool all_good = std::all_of(bad.begin(), bad.end(), [](char vertex) { return vertex == 0; });
     return all_good ? 0 : shrink_bad_triangles(model_, bad, scene);
   }
@@ -286,7 +289,8 @@ class GltfPoses : public PoseSource {
   std::vector<gltf::SceneNode> nodes_;
   std::optional<gltf::Skins> skins_;
   Scene still_;  // for an animated file, the parts that do not move
-  std::vector<gltf::VertexInstance> instances_;
+  std::optional<gltf::KeptMeshes> kept_;
+  std::vector<gltf::VertexInstance> instances_;  // of what is not kept
   std::vector<gltf::TriangleRange> ranges_;
   std::uint64_t morph_targets_ = 0;
   FileUse use_;

@@ -40,17 +40,11 @@ bool may_be_kept(const Model& model, int mesh) {
 
 }  // namespace
 
-KeptMeshes::KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, const Pose& pose,
-                       bool animated)
+KeptMeshes::KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, const Pose& pose)
     : kept_(nodes.size()) {
   const Instances wanted = model.options().instances;
-  if (wanted == Instances::copied || (animated && wanted == Instances::automatic)) {
+  if (wanted == Instances::copied) {
     return;
-  }
-  if (animated) {
-    throw sim::KeyError("structure.instances",
-                        "an animated scene is copied for each pose; set scene.animation = \"none\" to keep "
-                        "the instances of its static pose");
   }
   if (wanted == Instances::automatic && expanded_instances(model, nodes).triangles <= many_copies) {
     return;
@@ -89,7 +83,7 @@ std::vector<SceneNode> KeptMeshes::distinct(const std::vector<SceneNode>& nodes)
   return chosen;
 }
 
-void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) const {
+void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) {
   if (places_.empty()) {
     return;
   }
@@ -109,8 +103,27 @@ void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) const {
     for (const std::size_t place : places) {
       InstancePlace& instance = scene.instances.emplace_back(place_of(pose.nodes[place].world));
       instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+      order_.push_back(place);
     }
     scene.meshes.push_back({first, count});
+  }
+  number_instances(scene);
+}
+
+void KeptMeshes::move(const Pose& pose, Scene& scene) const {
+  if (order_.empty()) {
+    return;
+  }
+  const std::size_t copied = scene.instances.size() - order_.size();
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    InstancePlace place = place_of(pose.nodes[order_[i]].world);
+    if (const std::string why = why_not_kept(place); !why.empty()) {
+      throw sim::KeyError("structure.instances", "node " + std::to_string(pose.nodes[order_[i]].node) +
+                                                     " cannot be kept in this pose: " + why +
+                                                     "; set \"copied\"");
+    }
+    place.mesh = scene.instances[copied + i].mesh;
+    scene.instances[copied + i] = place;
   }
   number_instances(scene);
 }

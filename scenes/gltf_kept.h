@@ -17,20 +17,23 @@ namespace marti::scenes::gltf {
 /// (why_not_kept); skinned nodes have vertices of their own. All other meshes are copied, as one.
 class KeptMeshes {
  public:
-  /// Nothing is kept of an animated scene, or where FileOptions::instances says so. Throws UserError where
-  /// the file asks for kept instances of an animated scene.
-  KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, const Pose& pose, bool animated);
+  /// By the pose in which the scene is read. Nothing is kept where FileOptions::instances says so.
+  KeptMeshes(const Model& model, const std::vector<SceneNode>& nodes, const Pose& pose);
 
   /// Whether the mesh of the node `place` is left to add().
   [[nodiscard]] bool keeps(std::size_t place) const { return kept_[place]; }
   /// The nodes whose meshes take room of their own: of those that share a kept mesh the first.
   [[nodiscard]] std::vector<SceneNode> distinct(const std::vector<SceneNode>& nodes) const;
   /// Adds the kept meshes behind what is in the scene, each in its own coordinates, and all instances.
-  void add(MeshReader& reader, Pose& pose, Scene& scene) const;
+  void add(MeshReader& reader, Pose& pose, Scene& scene);
+  /// Puts the instances of the scene where they are in another pose. Throws KeyError about
+  /// structure.instances when one cannot be kept there.
+  void move(const Pose& pose, Scene& scene) const;
 
  private:
   std::vector<bool> kept_;                          // by place
   std::map<int, std::vector<std::size_t>> places_;  // of each kept mesh
+  std::vector<std::size_t> order_;  // places of the kept instances as they follow in the scene
 };
 
 }  // namespace marti::scenes::gltf

@@ -1,10 +1,12 @@
 // Meshes that nodes of a glTF file share, kept once: what is kept, and that it is what copies are.
 #include <cstdint>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "gltf_file.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/user_error.h"
 #include "tests/unit/scenes/loaded_scene.h"
 
 namespace marti::scenes::testing {
@@ -24,10 +26,13 @@ GltfFile shared_square() {
 
 class KeptMeshesOfGltf : public ::testing::Test {
  protected:
-  [[nodiscard]] Scene load(const GltfFile& file, Instances instances) const {
+  [[nodiscard]] AnimatedScene open(const GltfFile& file, Instances instances) const {
     FileOptions options;
     options.instances = instances;
-    return load_gltf(file.write_glb(directory_.path(), "scene.glb"), options, {});
+    return open_gltf(file.write_glb(directory_.path(), "scene.glb"), options, {});
+  }
+  [[nodiscard]] Scene load(const GltfFile& file, Instances instances) const {
+    return open(file, instances).at(0.0);
   }
 
  private:
@@ -70,6 +75,30 @@ TEST_F(KeptMeshesOfGltf, PlacesThatCannotBeTurnedBackAreCopied) {
   const Scene scene = load(file, Instances::kept);
   EXPECT_EQ(scene.instances.size(), 3U);
   EXPECT_EQ(scene.meshes[0].count, 4U);  // the flat one and that of one node
+}
+
+TEST_F(KeptMeshesOfGltf, MoveWithTheirNodes) {
+  const auto moving = [](const char* path, const std::vector<float>& values) {
+    GltfFile file = shared_square();
+    file.json["animations"] = {{{"samplers",
+                                 {{{"input", file.add_accessor<float>({0, 1}, 5126, "SCALAR", 1)},
+                                   {"output", file.add_positions(values)}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}}};
+    return file;
+  };
+  const GltfFile file = moving("translation", {1, 2, 3, 9, 2, 3});
+  const AnimatedScene kept = open(file, Instances::kept);
+  const AnimatedScene copied = open(file, Instances::copied);
+  for (const double time : {0.0, 0.3, 1.0}) {
+    const Scene scene = kept.at(time);
+    ASSERT_EQ(scene.instances.size(), 4U);
+    EXPECT_EQ(sorted_triangles(copied_instances(scene)), sorted_triangles(copied.at(time))) << time;
+  }
+  EXPECT_NE(sorted_triangles(copied.at(0.0)), sorted_triangles(copied.at(1.0)));
+  const AnimatedScene shrinks = open(moving("scale", {1, 1, 1, 1, 0, 1}), Instances::kept);
+  EXPECT_EQ(shrinks.at(0.5).instances.size(), 4U);
+  EXPECT_TRUE(test::says(test::user_error_of([&] { static_cast<void>(shrinks.at(1.0)); }),
+                         "node 0 cannot be kept in this pose: its transform is singular"));
 }
 
 TEST_F(KeptMeshesOfGltf, EachPrimitiveIsOfTheInstanceThatItsNumberIsIn) {
