@@ -81,16 +81,60 @@ Bvh Bvh::build(std::shared_ptr<const TriangleSet> triangles, PrimitiveRange rang
   if (range.count == 0) {
     return tree;
   }
-  tree.space_ = BvhSpace(tree.frame_);
-#ifdef MARTI_AVX2
-  tree.vectors_ = sim::has_avx2();
-#endif
+  tree.set_space();
   tree.number_nodes(build_binary_bvh(*tree.triangles_, range, tree.space_, options));
-  tree.order_records();
-  with_records(tree, [&tree](auto& records) { tree.make_records(records); });
-  tree.boxes_ = {};
-  tree.place_ = {};
+  tree.make_all_records();
   return tree;
+}
+
+void Bvh::set_space() {
+  space_ = BvhSpace(frame_);
+#ifdef MARTI_AVX2
+  vectors_ = sim::has_avx2();
+#endif
+}
+
+Bvh Bvh::refitted(std::shared_ptr<const TriangleSet> moved) const {
+  if (moved->size() != triangles_->size() || moved->triangles() != triangles_->triangles()) {
+    throw sim::UserError("a tree cannot be refitted to another number of primitives");
+  }
+  const RootFrame frame = make_frame(*moved);
+  return refitted(std::move(moved), frame);
+}
+
+Bvh Bvh::refitted(std::shared_ptr<const TriangleSet> moved, const RootFrame& frame) const {
+  Bvh tree;
+  tree.triangles_ = std::move(moved);
+  tree.options_ = options_;
+  tree.topology_ = topology_;
+  tree.frame_ = frame;
+  if (topology_.nodes.front().leaf) {
+    return tree;
+  }
+  tree.set_space();
+  tree.fit_boxes();
+  tree.make_all_records();
+  return tree;
+}
+
+// Children have higher numbers than their parent.
+void Bvh::fit_boxes() {
+  boxes_.resize(topology_.nodes.size());
+  for (std::size_t number = topology_.nodes.size(); number-- > 0;) {
+    const TopologyNode& node = topology_.nodes[number];
+    BvhBox box;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      box.include(node.leaf ? bvh_box_of(space_, *triangles_, topology_.entries[i]) : boxes_[i]);
+    }
+    boxes_[number] = box;
+  }
+}
+
+void Bvh::make_all_records() {
+  order_records();
+  with_records(*this, [this](auto& records) { make_records(records); });
+  boxes_ = {};
+  place_ = {};
 }
 
 // Puts the nodes behind those of `whole`, the root on `level`. Walks tell of them by their numbers there.
@@ -114,6 +158,36 @@ void Bvh::join(Topology& whole, unsigned level) {
   for (std::uint32_t& first : first_) {
     first += root_;
   }
+}
+
+// Undoes join(): the `nodes` nodes of `whole` from the root's on become the tree's own topology again.
+void Bvh::leave(const Topology& whole, std::uint32_t nodes) {
+  const auto begin = whole.nodes.begin() + root_;
+  topology_.nodes.assign(begin, begin + nodes);
+  const auto down = static_cast<std::uint8_t>(begin->level - 1);
+  std::uint32_t first_entry = ~0U;
+  std::uint32_t entries = 0;
+  for (const TopologyNode& node : topology_.nodes) {
+    first_entry = node.leaf ? std::min(first_entry, node.first) : first_entry;
+    entries += node.leaf ? node.count : 0;
+  }
+  for (TopologyNode& node : topology_.nodes) {
+    node.first -= node.leaf ? first_entry : root_;
+    node.level = static_cast<std::uint8_t>(node.level - down);
+  }
+  const auto from = whole.entries.begin() + first_entry;
+  topology_.entries.assign(from, from + entries);
+  with_records(*this, [this](auto& records) {
+    for (auto& record : records) {
+      if constexpr (requires { record.first; }) {
+        record.first -= root_;
+      }
+    }
+  });
+  for (std::uint32_t& first : first_) {
+    first -= root_;
+  }
+  root_ = 0;
 }
 
 void Bvh::number_nodes(const BvhBinaryTree& binary) {

@@ -38,6 +38,12 @@ class Bvh : public Queries<Bvh> {
   [[nodiscard]] static Bvh build(std::shared_ptr<const TriangleSet> triangles, PrimitiveRange range,
                                  const RootFrame& frame, const BvhOptions& options);
 
+  /// The same nodes over primitives of which some have moved, with boxes around what is below them now
+  /// (refitting: Lauterbach, Yoon, Tuft, Manocha, "RT-DEFORM", IEEE Symposium on Interactive Ray Tracing
+  /// 2006). Hits are those of a tree that is built for them; walks take longer the more they have moved.
+  /// Throws UserError when there are not as many.
+  [[nodiscard]] Bvh refitted(std::shared_ptr<const TriangleSet> moved) const;
+
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   [[nodiscard]] const Bvh& bvh() const { return *this; }
@@ -65,10 +71,16 @@ class Bvh : public Queries<Bvh> {
   Bvh() = default;
 
   void number_nodes(const BvhBinaryTree& binary);
+  [[nodiscard]] Bvh refitted(std::shared_ptr<const TriangleSet> moved, const RootFrame& frame) const;
+  void set_space();
+  void fit_boxes();
   void order_records();
+  /// From the topology and `boxes_`.
+  void make_all_records();
   template <class Node>
   void make_records(sim::LargeVector<Node>& records);
   void join(Topology& whole, unsigned level);
+  void leave(const Topology& whole, std::uint32_t nodes);
 
   template <class Node>
   [[nodiscard]] BvhView<Node> view(const sim::LargeVector<Node>& records) const {

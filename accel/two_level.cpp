@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -28,59 +29,116 @@ double diagonal_of(const scenes::Bounds& box) {
   return box.empty() ? 0.0 : std::hypot(extent.x, extent.y, extent.z);
 }
 
+// A leaf of the top level is one instance.
+BvhOptions of_top(BvhOptions options) {
+  options.max_objects = 1;
+  return options;
+}
+
+RootFrame frame_of(const TriangleSet& triangles, const PrimitiveRange& mesh) {
+  return make_frame(triangles.bounds(mesh), reach_of_meshes);
+}
+
+bool same_corners(const TriangleSet& before, const TriangleSet& after, const PrimitiveRange& mesh) {
+  for (std::uint32_t t = mesh.first; t < mesh.first + mesh.count; ++t) {
+    if (std::memcmp(&before[t], &after[t], sizeof before[t]) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
-TwoLevelBvh TwoLevelBvh::build(std::shared_ptr<const TriangleSet> triangles, const BvhOptions& options) {
-  TwoLevelBvh tree;
-  tree.triangles_ = std::move(triangles);
-  const std::vector<PrimitiveRange>& meshes = tree.triangles_->meshes();
-  const std::vector<scenes::InstancePlace>& instances = tree.triangles_->instances();
+std::shared_ptr<const TriangleSet> TwoLevelBvh::place_instances() {
+  const std::vector<PrimitiveRange>& meshes = triangles_->meshes();
   std::vector<scenes::Bounds> boxes;
   for (const PrimitiveRange& mesh : meshes) {
     sim::ensure(mesh.count > 0, "a mesh without primitives");
-    boxes.push_back(tree.triangles_->bounds(mesh));
+    boxes.push_back(triangles_->bounds(mesh));
   }
-  tree.instances_.reserve(instances.size());
-  for (const scenes::InstancePlace& place : instances) {
+  instances_.reserve(triangles_->instances().size());
+  for (const scenes::InstancePlace& place : triangles_->instances()) {
     // Modulo 2^32, as ids are.
-    tree.instances_.emplace_back(place, boxes[place.mesh], place.first - meshes[place.mesh].first);
-    tree.far_rounding_ = std::max(tree.far_rounding_, tree.instances_.back().stretch());
+    instances_.emplace_back(place, boxes[place.mesh], place.first - meshes[place.mesh].first);
+    far_rounding_ = std::max(far_rounding_, instances_.back().stretch());
   }
-
-  const double margin = tree.far_rounding_ * 0x1p-42 * diagonal_of(box_of(tree.instances_));
+  const double margin = far_rounding_ * 0x1p-42 * diagonal_of(box_of(instances_));
   std::vector<TriangleCorners> corners;
-  corners.reserve(instances.size());
-  for (const Instance& instance : tree.instances_) {
+  corners.reserve(instances_.size());
+  for (const Instance& instance : instances_) {
     const glm::dvec3 lo = instance.box().lo - margin;
     const glm::dvec3 hi = instance.box().hi + margin;
     corners.push_back({lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, lo.x, lo.y, lo.z});
   }
-  BvhOptions of_top = options;
-  of_top.max_objects = 1;
-  tree.top_ = Bvh::build(std::make_shared<const TriangleSet>(std::move(corners)), of_top);
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    tree.meshes_.push_back(
-        Bvh::build(tree.triangles_, meshes[m], make_frame(boxes[m], reach_of_meshes), options));
-  }
+  return std::make_shared<const TriangleSet>(std::move(corners));
+}
 
-  const Topology& top = tree.top_.topology();
+TwoLevelBvh TwoLevelBvh::build(std::shared_ptr<const TriangleSet> triangles, const BvhOptions& options) {
+  TwoLevelBvh tree;
+  tree.triangles_ = std::move(triangles);
+  tree.options_ = options;
+  tree.top_ = Bvh::build(tree.place_instances(), of_top(options));
+  for (const PrimitiveRange& mesh : tree.triangles_->meshes()) {
+    tree.meshes_.push_back(Bvh::build(tree.triangles_, mesh, frame_of(*tree.triangles_, mesh), options));
+  }
+  tree.join_trees();
+  return tree;
+}
+
+TwoLevelBvh TwoLevelBvh::moved(std::shared_ptr<const TriangleSet> after, Update update) const {
+  const std::vector<PrimitiveRange>& meshes = triangles_->meshes();
+  const auto same_range = [](const PrimitiveRange& a, const PrimitiveRange& b) {
+    return a.first == b.first && a.count == b.count;
+  };
+  const auto same_mesh = [](const scenes::InstancePlace& a, const scenes::InstancePlace& b) {
+    return a.mesh == b.mesh;
+  };
+  if (!std::ranges::equal(meshes, after->meshes(), same_range) ||
+      !std::ranges::equal(triangles_->instances(), after->instances(), same_mesh)) {
+    throw sim::UserError("a tree of instances cannot be moved to other meshes or instances");
+  }
+  TwoLevelBvh tree;
+  tree.triangles_ = std::move(after);
+  tree.options_ = options_;
+  const std::shared_ptr<const TriangleSet> boxes = tree.place_instances();
+  tree.top_ = update == Update::refit ? top_.refitted(boxes) : Bvh::build(boxes, of_top(options_));
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const std::uint32_t end =
+        m + 1 < meshes.size() ? meshes_[m + 1].root() : static_cast<std::uint32_t>(topology_.nodes.size());
+    const RootFrame frame = frame_of(*tree.triangles_, meshes[m]);
+    const bool stays = same_corners(*triangles_, *tree.triangles_, meshes[m]);
+    if (!stays && update == Update::rebuild) {
+      tree.meshes_.push_back(Bvh::build(tree.triangles_, meshes[m], frame, options_));
+      continue;
+    }
+    Bvh mesh = meshes_[m];
+    mesh.leave(topology_, end - mesh.root());
+    mesh.triangles_ = tree.triangles_;
+    tree.meshes_.push_back(stays ? std::move(mesh) : mesh.refitted(tree.triangles_, frame));
+  }
+  tree.join_trees();
+  return tree;
+}
+
+void TwoLevelBvh::join_trees() {
+  const Topology& top = top_.topology();
   unsigned deepest = 1;
   for (const TopologyNode& node : top.nodes) {
     deepest = std::max<unsigned>(deepest, node.level);
   }
-  tree.topology_.nodes = top.nodes;
-  for (Bvh& mesh : tree.meshes_) {
-    mesh.join(tree.topology_, deepest + 1);
+  topology_.nodes = top.nodes;
+  for (Bvh& mesh : meshes_) {
+    mesh.join(topology_, deepest + 1);
   }
-  tree.instance_of_.resize(top.nodes.size());
-  for (std::size_t n = 0; n < top.nodes.size() && !instances.empty(); ++n) {
+  instance_of_.resize(top.nodes.size());
+  for (std::size_t n = 0; n < top.nodes.size() && !instances_.empty(); ++n) {
     if (const TopologyNode& node = top.nodes[n]; node.leaf) {
       const std::uint32_t instance = top.entries[node.first];
-      tree.instance_of_[n] = instance;
-      tree.topology_.nodes[n] = {tree.meshes_[instances[instance].mesh].root(), 1, node.level, false};
+      instance_of_[n] = instance;
+      topology_.nodes[n] = {meshes_[instances_[instance].mesh()].root(), 1, node.level, false};
     }
   }
-  return tree;
 }
 
 std::uint64_t TwoLevelBvh::walk_bytes() const {

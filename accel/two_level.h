@@ -47,7 +47,18 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   [[nodiscard]] static TwoLevelBvh build(std::shared_ptr<const TriangleSet> triangles,
                                          const BvhOptions& options = {});
 
+  /// What is done to the trees of which something has moved: the top level's, and those of meshes whose
+  /// primitives are elsewhere in the mesh's coordinates.
+  enum class Update : std::uint8_t { rebuild, refit };
+  /// The tree over the same meshes and instances after some of both have moved; trees of meshes that have not
+  /// changed are kept. With Update::rebuild it equals a tree that is built from nothing. Throws UserError
+  /// when there are other meshes or instances.
+  [[nodiscard]] TwoLevelBvh moved(std::shared_ptr<const TriangleSet> after, Update update) const;
+
   [[nodiscard]] const Topology& topology() const { return topology_; }
+  /// By nodes of the top level, which are the first ones of the topology: the instance that a node is, if it
+  /// is one.
+  [[nodiscard]] const std::vector<std::uint32_t>& instance_of() const { return instance_of_; }
   /// The primitives of all meshes, in coordinates of their own.
   [[nodiscard]] const TriangleSet& triangles() const { return *triangles_; }
   /// In the scene's coordinates.
@@ -63,6 +74,10 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   friend bool test_bvh_leaf(const BvhTopView<Node>& view, std::uint32_t number, const BvhChild& leaf,
                             const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor);
   TwoLevelBvh() = default;
+  /// Makes the instances. Returns a triangle for each one's box, of which only the box is used.
+  [[nodiscard]] std::shared_ptr<const TriangleSet> place_instances();
+  /// Makes one topology of those of the top level and the meshes.
+  void join_trees();
 
   template <bool Any, class Real, class Visitor>
   bool query(const Ray& ray, const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor) const {
@@ -92,7 +107,8 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   }
 
   std::shared_ptr<const TriangleSet> triangles_;
-  Bvh top_;  ///< over a triangle for each instance's box, of which only the box is used
+  BvhOptions options_;  ///< of the meshes' trees
+  Bvh top_;             ///< over a triangle for each instance's box, of which only the box is used
   std::vector<Bvh> meshes_;
   std::vector<Instance> instances_;
   std::vector<std::uint32_t> instance_of_;  ///< by number of a node of the top level

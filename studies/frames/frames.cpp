@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/bvh.h"
 #include "processors/program/render.h"
 #include "sim/error.h"
 #include "sim/finished_parts.h"
@@ -16,6 +17,7 @@
 #include "studies/frames/frame_tables.h"
 #include "studies/frames/frame_ways.h"
 #include "studies/frames/frames_config.h"
+#include "studies/frames/refit_frames.h"
 #include "studies/run/functional_run.h"
 #include "studies/tables/provenance.h"
 #include "studies/tables/text_table.h"
@@ -137,6 +139,9 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
 tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
   FramesConfig frames = read_frames(config);
   frames.frame.wait_with(meter);
+  if (frames.frame.structure == accel::Bvh::kind_name) {
+    return run_refit_frames(config, frames);
+  }
   FramesStudy study(frames);
   study.run();
   const std::vector<FrameOutcome>& outcomes = study.outcomes();

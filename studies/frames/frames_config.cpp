@@ -39,17 +39,22 @@ void refuse_large_machines(const sim::Config& config, const FramesConfig& frames
 FramesConfig read_frames(sim::Config& config) {
   FramesConfig frames;
   frames.frame = keys::read_frame(config, keys::FrameUse::frames);
-  if (frames.frame.structure != "octree") {
-    config.fail("structure.kind", "only an octree is rebuilt in part");
+  const bool refits = frames.frame.structure == "bvh";
+  if (!refits && frames.frame.structure != "octree") {
+    config.fail("structure.kind", "an octree is rebuilt in part and a bvh refitted; others have no updates");
   }
   if (frames.frame.exact_too) {
     config.fail("image.voxel_cut_reference",
                 "the study renders no exact image beside one with the voxel cut");
   }
   frames.machine = keys::read_machine(config);
-  frames.machine.build = keys::read_dynamic_build(config);
+  frames.machine.build = refits ? keys::read_build(config) : keys::read_dynamic_build(config);
   keys::check_machine(config, frames.machine);
-  frames.verify = config.boolean("frames.verify");
+  if (refits) {
+    config.mark_unused_reason("frames.verify", "with a bvh the images of all trees are always compared");
+  } else {
+    frames.verify = config.boolean("frames.verify");
+  }
   config.refuse_unused();
   refuse_many_images(config, frames.frame);
   refuse_large_machines(config, frames);

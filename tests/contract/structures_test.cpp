@@ -39,6 +39,18 @@ struct Built {
   accel::Mailboxed<TestCounter> mailboxes{};
 };
 
+/// As many primitives, each triangle where another one was.
+std::shared_ptr<const TriangleSet> elsewhere(const TriangleSet& triangles) {
+  std::vector<accel::TriangleCorners> corners;
+  for (std::uint32_t i = 0; i < triangles.triangles(); ++i) {
+    corners.push_back(triangles[(i * 7919U + 13U) % triangles.triangles()]);
+  }
+  scenes::Quadric sphere;
+  sphere.radius = 1.0;
+  const std::vector<scenes::Quadric> spheres(triangles.size() - triangles.triangles(), sphere);
+  return std::make_shared<const TriangleSet>(std::move(corners), spheres);
+}
+
 /// Every kind, in several shapes: the default, the deepest possible, shallow, one single leaf.
 std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles) {
   std::vector<Built> all;
@@ -94,6 +106,12 @@ std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& triangles
   add_bvh(accel::BvhNodeKind::eight, 64, 64);
   add_bvh(accel::BvhNodeKind::eight_quantised, 3);
   add_bvh(accel::BvhNodeKind::eight_quantised, 1, 16);
+  for (std::size_t node = 0; node < accel::bvh_node_names.size(); ++node) {
+    const accel::Bvh other = accel::Bvh::build(elsewhere(*triangles),
+                                               {.node = static_cast<accel::BvhNodeKind>(node), .threads = 1});
+    all.push_back({"refitted bvh " + std::string(accel::bvh_node_names[node]),
+                   std::make_unique<accel::StructureOf<accel::Bvh>>(other.refitted(triangles))});
+  }
   add("none", 8, 12);
   return all;
 }

@@ -160,6 +160,32 @@ TEST_P(BvhOfEachNode, TheCostIsThatOfTheBoxes) {
   EXPECT_LE(bvh.sah_cost(), cost * (in_bytes(GetParam()) ? 1.06 : 1.0 + 1e-5));
 }
 
+TEST_P(BvhOfEachNode, RefittingKeepsTheNodesAndFitsTheBoxes) {
+  const auto before = std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:8:pot"));
+  const Bvh built = build(before);
+  const Bvh at_rest = built.refitted(before);
+  EXPECT_TRUE(at_rest.topology() == built.topology());
+  EXPECT_EQ(at_rest.sah_cost(), built.sah_cost());
+  EXPECT_EQ(at_rest.walk_bytes(), built.walk_bytes());
+  scenes::Scene scene = scenes::make_procedural("teapot:8:pot");
+  for (glm::dvec3& position : scene.positions) {
+    const double angle = 2.0 * position.z;  // twisted
+    position = {std::cos(angle) * position.x - std::sin(angle) * position.y,
+                std::sin(angle) * position.x + std::cos(angle) * position.y, position.z};
+  }
+  const auto after = std::make_shared<const accel::TriangleSet>(scene);
+  const Bvh twisted = built.refitted(after);
+  const std::vector<scenes::Bounds> boxes = tight_boxes(twisted);
+  double cost = 0.0;
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    const TopologyNode& node = twisted.topology().nodes[n];
+    cost += area(boxes[n]) / area(boxes[0]) * (node.leaf ? node.count : 1);
+  }
+  EXPECT_NEAR(twisted.sah_cost(), cost, cost * (in_bytes(GetParam()) ? 0.06 : 1e-5));
+  EXPECT_GT(twisted.sah_cost(), build(after).sah_cost());
+  EXPECT_THROW(static_cast<void>(built.refitted(mixed_set())), sim::UserError);
+}
+
 // A node is left out only if the ray misses its box, or the hit is nearer: what is visited is exactly what a
 // naive walk over tight boxes would visit, up to boxes that are missed or entered behind the hit by a hair.
 TEST_P(BvhOfEachNode, VisitsWhatTheRayMeetsInOrderOfEntry) {

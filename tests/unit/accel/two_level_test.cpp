@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -179,6 +180,59 @@ TEST_P(InstancesOfEachNode, HitsAreThoseOfEveryPrimitiveOfEveryInstance) {
     }
   }
   EXPECT_GT(hits, 200U);
+}
+
+/// Some instances and half of the largest mesh are elsewhere.
+scenes::Scene moved_scene(scenes::Scene scene, std::uint64_t seed) {
+  Random random(seed);
+  for (std::size_t i = 0; i < scene.instances.size(); i += 3) {
+    scene.instances[i].shift += random.point(5.0);
+  }
+  const scenes::PrimitiveRange& mesh = scene.meshes.back();
+  for (std::uint32_t t = mesh.first; t < mesh.first + mesh.count / 2; ++t) {
+    for (const std::uint32_t vertex : scene.triangles[t].vertex) {
+      scene.positions[vertex] += random.point(1.0);
+    }
+  }
+  scenes::number_instances(scene);
+  return scene;
+}
+
+TEST_P(InstancesOfEachNode, MovedTreesHitWhatTreesBuiltFromNothingDo) {
+  scenes::Scene scene = random_scene(7, 1.0);
+  TwoLevelBvh rebuilt = build(scene);
+  TwoLevelBvh refitted = build(scene);
+  const accel::Topology first = refitted.topology();
+  for (std::uint64_t frame = 0; frame < 3; ++frame) {
+    scene = moved_scene(scene, frame);
+    const TwoLevelBvh fresh = build(scene);
+    rebuilt = rebuilt.moved(set_of_scene(scene), TwoLevelBvh::Update::rebuild);
+    refitted = refitted.moved(set_of_scene(scene), TwoLevelBvh::Update::refit);
+    EXPECT_TRUE(rebuilt.topology() == fresh.topology());
+    EXPECT_TRUE(refitted.topology() == first);
+    StepCheck steps_of_fresh(fresh);
+    StepCheck steps_of_rebuilt(rebuilt);
+    StepCheck steps_of_refitted(refitted);
+    Random random(frame);
+    for (int i = 0; i < 200; ++i) {
+      const accel::Ray ray = random_ray(random, scene, 20.0, 0.0);
+      for (StepCheck* const steps : {&steps_of_fresh, &steps_of_rebuilt, &steps_of_refitted}) {
+        steps->begin();
+      }
+      const accel::Hit expected = fresh.closest(ray, steps_of_fresh);
+      EXPECT_TRUE(test::same_bits(rebuilt.closest(ray, steps_of_rebuilt), expected));
+      EXPECT_TRUE(test::same_bits(refitted.closest(ray, steps_of_refitted), expected));
+      EXPECT_TRUE(test::same_bits(naive_closest<double>(refitted, ray), expected));
+    }
+    EXPECT_EQ(steps_of_rebuilt.branches, steps_of_fresh.branches);
+    EXPECT_GT(steps_of_refitted.branches, steps_of_fresh.branches);
+  }
+  scene.instances.front().mesh = 1;
+  scenes::number_instances(scene);
+  EXPECT_NE(test::user_error_of([&] {
+              static_cast<void>(refitted.moved(set_of_scene(scene), TwoLevelBvh::Update::refit));
+            }).find("other meshes or instances"),
+            std::string::npos);
 }
 
 TEST_P(InstancesOfEachNode, HitsAreThoseOfCopiesUpToRounding) {

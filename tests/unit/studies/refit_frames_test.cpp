@@ -1,0 +1,138 @@
+// The study of frames with a bounding volume hierarchy.
+#include "studies/frames/refit_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "processors/replay/replay.h"
+#include "sim/config.h"
+#include "sim/error.h"
+#include "studies/frames/frames.h"
+#include "studies/keys/machine_keys.h"
+#include "studies/run/functional_run.h"
+#include "studies/run/run_result.h"
+#include "studies/tables/csv.h"
+#include "tests/support/temporary_directory.h"
+#include "tests/support/wrong_configurations.h"
+#include "tests/unit/scenes/gltf_file.h"
+
+namespace marti::studies {
+
+using namespace frames;
+using namespace tables;
+
+namespace {
+
+const std::string swinging = "[scene]\nsource = \"" MARTI_SOURCE "/configs/scenes/swing.glb\"\n";
+const std::string small_bvh =
+    "[frames]\ncount = 3\nfirst = 2\nrate = 8\n[image]\nwidth = 32\nheight = 24\nmax_depth = 2\n"
+    "[machine]\nnodes = 3\n[structure]\nkind = \"bvh\"\n";
+
+StudyOutput study(const std::string& text) {
+  sim::Config config = sim::Config::from_text(run::run_schema(), text, "frames.toml");
+  return run_frames(config);
+}
+
+const Table& table_named(const StudyOutput& output, std::string_view name) {
+  for (const Table& table : output.tables) {
+    if (table.name() == name) {
+      return table;
+    }
+  }
+  throw sim::InternalError("there is no table " + std::string(name));
+}
+
+std::int64_t number(const Table& table, std::size_t row, const char* column) {
+  return std::get<std::int64_t>(table.at(row, column));
+}
+
+TEST(RefitFrames, RebuiltFramesAreThoseOfRunsOfOneFrame) {
+  const StudyOutput output = study(swinging + small_bvh);
+  const Table& refits = table_named(output, "refits");
+  ASSERT_EQ(refits.rows().size(), 6U);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    sim::Config config = sim::Config::from_text(
+        run::run_schema(), swinging + small_bvh, "frames.toml",
+        std::vector<std::string>{"frames.count=1", "frames.first=" + std::to_string(2 + i)});
+    const run::FunctionalRun one = run::run_functional(keys::read_frame(config));
+    EXPECT_EQ(output.images[i].image.pixels, one.frame.image.pixels);
+    const auto machine = keys::read_machine(config);
+    EXPECT_EQ(number(refits, 2 * i, "render"), processors::replay::replay(*one.frame.log, machine).end);
+  }
+}
+
+TEST(RefitFrames, RefittingWritesLessAndWalksMore) {
+  const StudyOutput output = study(swinging + small_bvh);
+  const Table& frames = table_named(output, "frames");
+  const Table& refits = table_named(output, "refits");
+  const Table& totals = table_named(output, "totals");
+  EXPECT_EQ(number(refits, 0, "records"), number(refits, 1, "records"));  // of a first tree all are written
+  EXPECT_EQ(number(refits, 0, "render"), number(refits, 1, "render"));
+  std::int64_t written = 0;
+  for (std::size_t frame = 1; frame < 3; ++frame) {
+    EXPECT_EQ(number(frames, frame, "moved"), 1432);
+    EXPECT_EQ(number(refits, 2 * frame, "records"), number(frames, frame, "branches"));
+    EXPECT_LT(number(refits, 2 * frame + 1, "records"), number(refits, 2 * frame, "records"));
+    EXPECT_GT(number(refits, 2 * frame + 1, "records"), 1432 / 24);  // each has eight leaves of three at most
+    written += number(refits, 2 * frame + 1, "written");
+  }
+  EXPECT_EQ(number(totals, 1, "written"), written);
+  EXPECT_EQ(output.report.substr(0, 6), "answer");
+}
+
+TEST(RefitFrames, WhereNothingMovesNothingIsRefitted) {
+  const StudyOutput output = study("[scene]\nsource = \"tetra:3\"\n" + small_bvh);
+  const Table& refits = table_named(output, "refits");
+  EXPECT_EQ(number(refits, 3, "records"), 0);
+  EXPECT_EQ(number(refits, 3, "render"), number(refits, 0, "render"));
+}
+
+// Four nodes share a mesh of two triangles; one moves, and one triangle of a mesh of its own as well.
+TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
+  const test::TemporaryDirectory directory;
+  scenes::testing::GltfFile file = scenes::testing::GltfFile::square();
+  file.json["nodes"] = {{{"mesh", 0}},
+                        {{"mesh", 0}, {"translation", {2, 0, 0}}},
+                        {{"mesh", 0}, {"translation", {0, 2, 0}}},
+                        {{"mesh", 0}, {"translation", {2, 2, 0}}}};
+  file.json["scenes"] = {{{"nodes", {0, 1, 2, 3}}}};
+  file.json["animations"] = {
+      {{"samplers",
+        {{{"input", file.add_accessor<float>({0, 1}, 5126, "SCALAR", 1)},
+          {"output", file.add_positions({2, 0, 0, 2, -1, 1})}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+  const std::string text = "[scene]\nsource = \"" + file.write_glb(directory.path(), "a.glb").string() +
+                           "\"\n" + small_bvh + "instances = \"kept\"\nbvh_children = \"2\"\n";
+  const StudyOutput output = study(text);
+  const Table& frames = table_named(output, "frames");
+  const Table& refits = table_named(output, "refits");
+  ASSERT_EQ(refits.rows().size(), 9U);
+  EXPECT_EQ(number(frames, 1, "moved"), 2);
+  // Three branches over four instances, and the root of their mesh.
+  EXPECT_EQ(number(frames, 1, "branches"), 8);
+  EXPECT_EQ(number(refits, 3, "records"), 8);
+  EXPECT_EQ(number(refits, 4, "records"), 7);
+  EXPECT_EQ(number(refits, 5, "records"), 3);  // the instance, and two branches above it
+  EXPECT_EQ(number(refits, 4, "render"), number(refits, 3, "render"));
+  EXPECT_EQ(csv_of(refits), csv_of(table_named(study(text), "refits")));
+}
+
+TEST(RefitFrames, WrongConfigurationsAreRefused) {
+  const std::vector<test::WrongConfiguration> cases = {
+      {"[structure]\nkind = \"grid\"\n", {"frames.toml:2", "structure.kind", "octree", "bvh"}},
+      {"[structure]\nkind = \"bvh\"\n[build]\nsharing = \"shared\"\n", {"frames.toml:4", "build.sharing"}},
+      {"[structure]\nkind = \"bvh\"\n[frames]\nverify = true\n",
+       {"frames.toml:4", "frames.verify", "always"}},
+      {"[structure]\nkind = \"bvh\"\n[machine]\nnodes = 65536\n[cache]\nsize = \"64 MiB\"\n",
+       {"frames.toml:4", "machine.nodes"}},
+  };
+  test::expect_refusals(cases, [](const char* text) { study(text); });
+}
+
+}  // namespace
+}  // namespace marti::studies
