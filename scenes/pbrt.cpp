@@ -193,6 +193,7 @@ class Reader {
       state_.emission = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) *
                         parameters.number("scale", 1.0, 0.0, largest_emission);
       state_.emission = glm::min(state_.emission, glm::dvec3(largest_emission));
+      parameters.leave_out_rest(left_out_);
     } else if (name == "Camera") {
       const std::string kind = text_.text();
       set_camera(kind, text_.parameters());
@@ -228,6 +229,7 @@ class Reader {
       return;
     }
     CutOut cut_out = materials_.cut_out_of(parameters);
+    parameters.leave_out_rest(left_out_);
     if (cut_out.everywhere()) {
       left_out_.features["shapes that are cut out as a whole"] += 1;
       return;
@@ -325,6 +327,7 @@ class Reader {
 
   void add_light_source(const std::string& kind, const Parameters& parameters) {
     const std::optional<Light> light = light_source(kind, parameters, scene_, left_out_);
+    parameters.leave_out_rest(left_out_);
     if (!light) {
       return;
     }
@@ -352,6 +355,7 @@ class Reader {
     }
     const Placement placement = placement_of(to_world, text_);
     camera_ = View{placement, parameters.number("fov", 90.0, 1e-3, 179.9)};
+    parameters.leave_out_rest(left_out_);
   }
 
   /// The camera as this program has them: one of the right-handed world.
@@ -390,6 +394,7 @@ class Reader {
     }
     set_view(scene_, file_.options());
     note_instances(scene_);
+    materials_.leave_out_rest();
     note_left_out(left_out_, scene_);
     note_degenerate(scene_);
     FileUse use;

@@ -70,7 +70,7 @@ std::size_t PbrtMaterials::named(const std::string& name) const {
 
 void PbrtMaterials::add_texture(std::string name, std::string kind, Parameters parameters) {
   file_.take_memory(bytes_of_entry + name.size() + kind.size() + parameters.bytes(), "its textures take");
-  textures_.insert_or_assign(std::move(name), KnownTexture{std::move(kind), std::move(parameters)});
+  textures_.insert_or_assign(std::move(name), KnownTexture{std::move(kind), std::move(parameters), false});
 }
 
 CutOut PbrtMaterials::cut_out_of(const Parameters& shape) {
@@ -93,6 +93,9 @@ std::optional<std::uint32_t> PbrtMaterials::in_scene(std::size_t material, const
     return same->second;
   }
   std::optional<Material> made = convert(known, 0);
+  if (known.in_scene.empty()) {
+    known.parameters.leave_out_rest(left_out_);
+  }
   if (!made) {
     return std::nullopt;
   }
@@ -193,7 +196,9 @@ PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parame
                 ? "there is no texture " + in_quotes(name) + " before it"
                 : "more than " + std::to_string(most_nested) + " textures refer to each other");
   }
-  const auto& [kind, parameters] = found->second;
+  found->second.used = true;
+  const std::string& kind = found->second.kind;
+  const Parameters& parameters = found->second.parameters;
   if (kind == "constant") {
     return tint(parameters, "value", glm::dvec3(1.0), is_alpha, depth + 1);
   }
@@ -215,6 +220,14 @@ PbrtMaterials::Tint PbrtMaterials::texture(const std::string& name, const Parame
   left_out_.replace("textures that are no images, by grey",
                     parameters.place() + ": textures of the kind " + in_quotes(kind) + " are not supported");
   return {glm::dvec3(0.5), no_texture};
+}
+
+void PbrtMaterials::leave_out_rest() const {
+  for (const auto& [name, texture] : textures_) {
+    if (texture.used) {
+      texture.parameters.leave_out_rest(left_out_);
+    }
+  }
 }
 
 std::uint32_t PbrtMaterials::image(const Parameters& parameters, bool is_alpha) {

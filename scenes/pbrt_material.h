@@ -49,6 +49,9 @@ class PbrtMaterials {
   /// counts. pbrt compares it with a random number for each ray; here a surface is where it is at least 0.5.
   [[nodiscard]] CutOut cut_out_of(const Parameters& shape);
 
+  /// Parameters of textures in use that nothing has asked for. Call it when all shapes have been read.
+  void leave_out_rest() const;
+
   [[nodiscard]] std::size_t known() const { return known_.size(); }
   [[nodiscard]] std::size_t used() const { return used_; }
 
@@ -63,6 +66,7 @@ class PbrtMaterials {
   struct KnownTexture {
     std::string kind;
     Parameters parameters;
+    bool used = false;
   };
   struct Tint {
     glm::dvec3 color{1.0};

@@ -31,7 +31,20 @@ constexpr std::size_t most_includes = 16384;
 const Parameter* Parameters::find(std::string_view name) const {
   const auto found =
       std::find_if(all_.begin(), all_.end(), [&](const Parameter& p) { return p.name == name; });
-  return found == all_.end() ? nullptr : &*found;
+  if (found == all_.end()) {
+    return nullptr;
+  }
+  found->asked = true;
+  return &*found;
+}
+
+void Parameters::leave_out_rest(LeftOut& left_out) const {
+  for (const Parameter& parameter : all_) {
+    if (!parameter.asked) {
+      left_out.leave_out("parameters of pbrt that are not read here",
+                         in_quotes(parameter.name) + ", " + place_.substr(place_.rfind('/') + 1));
+    }
+  }
 }
 
 std::uint64_t Parameters::bytes() const {

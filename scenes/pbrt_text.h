@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/file_access.h"
+#include "scenes/scene_notes.h"
 #include "scenes/source_file.h"
 
 namespace marti::scenes::pbrt {
@@ -24,6 +25,7 @@ struct Parameter {
   std::string name;
   std::vector<double> numbers;
   std::vector<std::string> texts;  ///< in quotation marks, or true and false
+  mutable bool asked = false;      ///< for its value, or whether it is there
 };
 
 /// The parameters of one statement.
@@ -47,6 +49,9 @@ class Parameters {
   [[nodiscard]] std::string text(std::string_view name) const;
   /// A point or a vector. Throws UserError when it is not three numbers up to 1e30.
   [[nodiscard]] glm::dvec3 vector(std::string_view name, const glm::dvec3& otherwise) const;
+
+  /// Counts those that nobody has asked for. Call it when the statement has been read.
+  void leave_out_rest(LeftOut& left_out) const;
 
   /// "FILE:LINE" of the statement.
   [[nodiscard]] const std::string& place() const { return place_; }

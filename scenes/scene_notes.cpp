@@ -5,6 +5,11 @@
 
 namespace marti::scenes {
 
+void LeftOut::leave_out(const std::string& what, const std::string& name) {
+  ++features[what];
+  first.try_emplace(what, name);
+}
+
 void LeftOut::replace(const std::string& what, const std::string& refusal) {
   if (strict) {
     throw sim::UserError(refusal);
@@ -15,7 +20,9 @@ void LeftOut::replace(const std::string& what, const std::string& refusal) {
 void note_left_out(const LeftOut& left_out, Scene& scene) {
   for (const auto& [what, count] : left_out.features) {
     if (count > 0) {
-      scene.notes.push_back("Left out: " + std::to_string(count) + " " + what + ".");
+      const auto first = left_out.first.find(what);
+      scene.notes.push_back("Left out: " + std::to_string(count) + " " + what +
+                            (first == left_out.first.end() ? "" : ", the first " + first->second) + ".");
     }
   }
   for (const auto& [what, count] : left_out.replaced) {

@@ -16,6 +16,10 @@ struct LeftOut {
   std::map<std::string, std::uint64_t>
       replaced;  ///< by a description in the plural and of what stands for it
 
+  std::map<std::string, std::string> first;  ///< of some features, by the same description: the first one
+
+  /// Counts one thing that is left out, and keeps the name of the first.
+  void leave_out(const std::string& what, const std::string& name);
   /// Counts one thing that is replaced. If that is not wanted, throws UserError(`refusal`).
   void replace(const std::string& what, const std::string& refusal);
 };

@@ -229,6 +229,24 @@ TEST(Pbrt, FilesOfTheFolderBelongToIt) {
   EXPECT_TRUE(scene.framed);
 }
 
+TEST(Pbrt, ParametersThatNothingReadsAreCounted) {
+  const Scene scene = open(
+      "Texture \"t\" \"spectrum\" \"constant\" \"float value\" .5 \"float vaule\" 1\n"
+      "Texture \"unused\" \"spectrum\" \"constant\" \"float vaule\" 1\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n \"rgb reflectence\" [ 1 0 0 ]\n"
+      "Shape \"sphere\" \"float radius\" 1 \"float raduis\" 2\nShape \"sphere\"\n"
+      "LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"float scael\" 2\n");
+  EXPECT_TRUE(has_note(scene, "4 parameters of pbrt that are not read here, the first 'raduis', a.pbrt:"))
+      << [&] {
+           std::string all;
+           for (const std::string& note : scene.notes) {
+             all += note + "\n";
+           }
+           return all;
+         }();
+  EXPECT_FALSE(has_note(open(one_triangle), "are not read"));
+}
+
 TEST(Pbrt, WhatIsWrongIsSaidWithItsLine) {
   const SceneFolder folder;
   folder.write("itself.pbrt", "Include \"other.pbrt\"\n");
