@@ -41,7 +41,7 @@ class PlyReader {
       : file_(file),
         text_(file.read(1)),
         lines_(text_, sim::shown(file.path().string()), TextLines::Style::plain),
-        left_out_{.strict = file.options().strict, .features = {}, .replaced = {}},
+        left_out_{.strict = file.options().strict, .features = {}, .replaced = {}, .first = {}},
         header_(read_ply_header(lines_, text_.size(), left_out_)),
         values_(text_, sim::shown(file.path().string()), header_.format, lines_),
         mesh_(file, scene_),

@@ -29,7 +29,7 @@ class EventQueue {
   EventQueue() : tree_(0), calendar_(fewest_days), later_years_(1) {}
 
   /// Bytes of host memory for each pending event, and beside them for a queue of so many.
-  static constexpr std::size_t bytes_an_event = EventCalendar::bytes_an_event;
+  static constexpr std::size_t bytes_an_event = EventCalendar::bytes_an_event + LaterYears::bytes_an_event;
   [[nodiscard]] static std::size_t bytes_of_days(std::size_t events) {
     return EventCalendar::bytes_a_day * days_for(events) + LaterYears::bytes_a_year * years_for(events);
   }

@@ -27,6 +27,9 @@ class LaterYears {
 
   /// Bytes of host memory for each year beside its events.
   static constexpr std::size_t bytes_a_year = 512;
+  /// Bytes of host memory for each event: its part of a block, three times, because the table of blocks grows
+  /// by doubling and the old one is there until the new one is filled.
+  static constexpr std::size_t bytes_an_event = std::size_t{3} * 256 / 15;
 
   [[nodiscard]] bool on() const { return mask_ != 0; }
   [[nodiscard]] std::uint32_t years() const { return mask_ + 1; }
@@ -95,7 +98,7 @@ class LaterYears {
     std::uint32_t before = none;  // of its year, or of the blocks that are free
     std::array<Event, events_a_block> events;
   };
-  static_assert(sizeof(Block) == 256);
+  static_assert(bytes_an_event == 3 * sizeof(Block) / events_a_block);
 
   std::uint32_t new_block(std::uint32_t before) {
     std::uint32_t number = free_;
