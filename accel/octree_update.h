@@ -55,11 +55,6 @@ struct OctreeUpdate {
   [[nodiscard]] bool altered(std::uint32_t node) const { return nodes[node] != NodeUpdate::kept; }
 };
 
-/// The ids of the primitives that differ in any bit of their coordinates, ascending. Throws UserError when
-/// the numbers of triangles or of other primitives differ.
-[[nodiscard]] std::vector<std::uint32_t> moved_primitives(const TriangleSet& before,
-                                                          const TriangleSet& after);
-
 /// Updates the tree `before` to the triangles `after`, with the same options. Throws UserError when there are
 /// not as many triangles as before, and when the root box differs (give OctreeOptions::enclose to the first
 /// build to keep it).

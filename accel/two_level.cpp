@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <utility>
 
+#include "accel/moved_primitives.h"
 #include "sim/error.h"
 
 namespace marti::accel {
@@ -37,15 +37,6 @@ BvhOptions of_top(BvhOptions options) {
 
 RootFrame frame_of(const TriangleSet& triangles, const PrimitiveRange& mesh) {
   return make_frame(triangles.bounds(mesh), reach_of_meshes);
-}
-
-bool same_corners(const TriangleSet& before, const TriangleSet& after, const PrimitiveRange& mesh) {
-  for (std::uint32_t t = mesh.first; t < mesh.first + mesh.count; ++t) {
-    if (std::memcmp(&before[t], &after[t], sizeof before[t]) != 0) {
-      return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace
@@ -101,13 +92,15 @@ TwoLevelBvh TwoLevelBvh::moved(std::shared_ptr<const TriangleSet> after, Update 
   TwoLevelBvh tree;
   tree.triangles_ = std::move(after);
   tree.options_ = options_;
+  const std::vector<std::uint32_t> primitives = moved_primitives(*triangles_, *tree.triangles_);
   const std::shared_ptr<const TriangleSet> boxes = tree.place_instances();
   tree.top_ = update == Update::refit ? top_.refitted(boxes) : Bvh::build(boxes, of_top(options_));
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const std::uint32_t end =
         m + 1 < meshes.size() ? meshes_[m + 1].root() : static_cast<std::uint32_t>(topology_.nodes.size());
     const RootFrame frame = frame_of(*tree.triangles_, meshes[m]);
-    const bool stays = same_corners(*triangles_, *tree.triangles_, meshes[m]);
+    const auto next = std::ranges::lower_bound(primitives, meshes[m].first);
+    const bool stays = next == primitives.end() || *next >= meshes[m].first + meshes[m].count;
     if (!stays && update == Update::rebuild) {
       tree.meshes_.push_back(Bvh::build(tree.triangles_, meshes[m], frame, options_));
       continue;

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "accel/bvh.h"
-#include "accel/octree_update.h"
+#include "accel/moved_primitives.h"
 #include "accel/structure.h"
 #include "accel/two_level.h"
 #include "processors/program/render.h"

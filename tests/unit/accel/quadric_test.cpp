@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "accel/intersect.h"
-#include "accel/octree_update.h"
+#include "accel/moved_primitives.h"
 #include "accel/primitive_overlap.h"
 #include "sim/error.h"
 #include "tests/contract/hostile_quadrics.h"
