@@ -250,6 +250,8 @@ class Reader {
     if (object_ != nullptr) {
       object_->shines = object_->shines || shines;
     }
+    left_out_.replaced["spheres and cylinders, by triangles, because instances are kept"] +=
+        instances_ == Instances::kept ? shape->quadrics.size() : 0U;
     if (shines || instances_ == Instances::kept) {
       tessellate(*shape);  // paths find triangles that emit light, and instances are of triangles
     }

@@ -65,6 +65,7 @@ TEST(MergedInstances, ALaterObjectMayTakeANameAndRoundShapesBecomeTriangles) {
       std::string(shape_in_file) + "ObjectEnd Translate 5 0 0 ObjectInstance \"a\" Shape \"cylinder\"\n";
   const Scene kept = open_pbrt(text, Instances::kept);
   EXPECT_TRUE(kept.quadrics.empty());
+  EXPECT_TRUE(has_note(kept, "Replaced: 2 spheres and cylinders, by triangles"));
   ASSERT_EQ(kept.meshes.size(), 3U);
   EXPECT_EQ(kept.meshes[0].count, 48U);
   EXPECT_EQ(kept.meshes[1].count, 528U);
