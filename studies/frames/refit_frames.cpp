@@ -350,10 +350,10 @@ std::string answer_of(const std::vector<RefitFrame>& frames) {
     rebuilt += first ? 0 : frame.of(RefitWay::rebuild).records;
   }
   if (rebuilt == 0) {
-    return "answer   one frame: there is nothing to refit\n";
+    return "One frame: there is nothing to refit\n";
   }
   return fmt::format(
-      "answer   refitting writes {:.1f} % of the records that rebuilding does, and frames take at most "
+      "Refitting writes {:.1f} % of the records that rebuilding does, and frames take at most "
       "{:.1f} % longer "
       "(frame {})\n",
       100.0 * static_cast<double>(refitted) / static_cast<double>(rebuilt),
