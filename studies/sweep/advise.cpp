@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "sim/mapped.h"
 #include "studies/figures/best_offer.h"
 #include "studies/helps/what_helps.h"
+#include "studies/host/signals_held.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/sweep/plan/sweep_keys.h"
 #include "studies/sweep/work/advice_work.h"
@@ -115,6 +117,8 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
   if (plan.points.empty()) {
     return;
   }
+  // A signal's last words close the store, which must not happen while it is read here.
+  std::optional<host::SignalsHeld> held(std::in_place);
   std::vector<std::size_t> machines = machines_that_matter(plan, store);
   const std::vector<std::int64_t> references = store.sums("COALESCE(hits, 0) + COALESCE(misses, 0)");
   const std::vector<std::int64_t> events = store.sums("events");
@@ -132,6 +136,7 @@ void advise(const SweepPlan& plan, SweepStore& store, const sim::MemoryBudget& m
       std::min(machines.size(), std::clamp<std::size_t>(budget / enough, least_advised, most_advised)));
   const helps::Work of_each = std::max(least_advice_work, budget / machines.size());
   const std::vector<bool> advised = store.advised();
+  held.reset();
   for (const std::size_t index : machines) {
     if (advised[index]) {
       continue;
