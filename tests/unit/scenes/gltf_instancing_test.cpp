@@ -139,8 +139,7 @@ TEST_F(GltfInstancing, BadPlacesAreRefused) {
        "of 3 and of 1 places"},
       {refusal_of([](GltfFile&, Json& attributes) { attributes["SCALE"] = attributes["ROTATION"]; }),
        "SCALE"},
-      {refusal_of([](GltfFile& file, Json&) { file.json["accessors"][2]["count"] = 40000000; }),
-       "places"},
+      {refusal_of([](GltfFile& file, Json&) { file.json["accessors"][2]["count"] = 40000000; }), "places"},
       {refusal_of([](GltfFile& file, Json& attributes) {
          attributes["ROTATION"] =
              file.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1}, 5126, "VEC4", 4);

@@ -93,8 +93,7 @@ TEST(Chart, ChartsOfManyLinesSayWhatTheirLinesAre) {
           << chart.name;
     }
   }
-  EXPECT_EQ(shared_out,
-            (std::set<std::string>{"figure3", "memory_latency"}));
+  EXPECT_EQ(shared_out, (std::set<std::string>{"figure3", "memory_latency"}));
 }
 
 }  // namespace
