@@ -250,8 +250,10 @@ class Reader {
     if (object_ != nullptr) {
       object_->shines = object_->shines || shines;
     }
-    left_out_.replaced["spheres and cylinders, by triangles, because instances are kept"] +=
-        instances_ == Instances::kept ? shape->quadrics.size() : 0U;
+    if (instances_ == Instances::kept && !shape->quadrics.empty()) {
+      left_out_.replaced["spheres and cylinders, by triangles, because instances are kept"] +=
+          shape->quadrics.size();
+    }
     if (shines || instances_ == Instances::kept) {
       tessellate(*shape);  // paths find triangles that emit light, and instances are of triangles
     }
