@@ -55,6 +55,19 @@ std::uint32_t merged_children(const BvhBinaryTree& binary, std::uint32_t node, s
   return count;
 }
 
+// Adds to the numbers of nodes that records hold, or that are kept beside them, modulo 2^32.
+template <class Records>
+void shift_nodes(Records& records, std::vector<std::uint32_t>& beside, std::uint32_t by) {
+  for (auto& record : records) {
+    if constexpr (requires { record.first; }) {
+      record.first += by;
+    }
+  }
+  for (std::uint32_t& first : beside) {
+    first += by;
+  }
+}
+
 double half_area(const scenes::Bounds& box) {
   const glm::dvec3 extent = box.hi - box.lo;
   return extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
@@ -148,16 +161,7 @@ void Bvh::join(Topology& whole, unsigned level) {
   }
   whole.entries.insert(whole.entries.end(), topology_.entries.begin(), topology_.entries.end());
   topology_ = {};
-  with_records(*this, [this](auto& records) {
-    for (auto& record : records) {
-      if constexpr (requires { record.first; }) {
-        record.first += root_;
-      }
-    }
-  });
-  for (std::uint32_t& first : first_) {
-    first += root_;
-  }
+  with_records(*this, [this](auto& records) { shift_nodes(records, first_, root_); });
 }
 
 // Undoes join(): the `nodes` nodes of `whole` from the root's on become the tree's own topology again.
@@ -177,16 +181,7 @@ void Bvh::leave(const Topology& whole, std::uint32_t nodes) {
   }
   const auto from = whole.entries.begin() + first_entry;
   topology_.entries.assign(from, from + entries);
-  with_records(*this, [this](auto& records) {
-    for (auto& record : records) {
-      if constexpr (requires { record.first; }) {
-        record.first -= root_;
-      }
-    }
-  });
-  for (std::uint32_t& first : first_) {
-    first -= root_;
-  }
+  with_records(*this, [this](auto& records) { shift_nodes(records, first_, 0U - root_); });
   root_ = 0;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenes/gltf_instances.h"
+#include "scenes/merged_instances.h"
 #include "sim/key_error.h"
 
 namespace marti::scenes::gltf {
@@ -87,10 +88,7 @@ void KeptMeshes::add(MeshReader& reader, Pose& pose, Scene& scene) {
   if (places_.empty()) {
     return;
   }
-  if (!scene.triangles.empty()) {
-    scene.meshes.push_back({0, static_cast<std::uint32_t>(scene.triangles.size())});
-    scene.instances.emplace_back();
-  }
+  begin_instances(scene);
   for (const auto& [mesh, places] : places_) {
     const auto first = static_cast<std::uint32_t>(scene.triangles.size());
     const glm::dmat4 world = std::exchange(pose.nodes[places.front()].world, glm::dmat4(1.0));

@@ -41,7 +41,7 @@ struct Transform {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z
   glm::dvec3 scale{1.0};
 
-  /// std::nullopt if the rotation is none.
+  /// std::nullopt if the rotation is no usable quaternion (is_usable_quaternion).
   [[nodiscard]] std::optional<glm::dmat4> matrix() const;
 };
 

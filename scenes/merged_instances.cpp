@@ -21,6 +21,13 @@ std::uint32_t fixed_triangles(const Scene& scene) {
   return fixed && stand == 1 ? scene.meshes.front().count : 0;
 }
 
+void begin_instances(Scene& scene) {
+  if (!scene.triangles.empty()) {
+    scene.meshes.push_back({0, static_cast<std::uint32_t>(scene.triangles.size())});
+    scene.instances.emplace_back();
+  }
+}
+
 void note_instances(Scene& scene) {
   if (scene.instances.empty()) {
     return;
@@ -62,10 +69,7 @@ void MergedInstances::finish(Scene& scene) {
   }
   tessellate(scene);
   const auto fixed = static_cast<std::uint32_t>(scene.triangles.size());
-  if (fixed > 0) {
-    scene.meshes.push_back({0, fixed});
-    scene.instances.emplace_back();
-  }
+  begin_instances(scene);
   const auto first_mesh = static_cast<std::uint32_t>(scene.meshes.size());
   for (const PrimitiveRange& mesh : meshes_) {
     scene.meshes.push_back({fixed + mesh.first, mesh.count});

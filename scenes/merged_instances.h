@@ -12,6 +12,10 @@ namespace marti::scenes {
 /// those of the first mesh if it stands nowhere but in the first instance and is not moved by it.
 [[nodiscard]] std::uint32_t fixed_triangles(const Scene& scene);
 
+/// Makes one mesh, in one instance that does not move it, of all triangles of a scene without instances, if
+/// it has any: meshes that are kept can follow.
+void begin_instances(Scene& scene);
+
 /// A note that counts the instances, if there are any.
 void note_instances(Scene& scene);
 

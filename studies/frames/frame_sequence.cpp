@@ -6,6 +6,7 @@
 #include "scenes/open.h"
 #include "sim/error.h"
 #include "studies/host/image_file.h"
+#include "studies/run/functional_run.h"
 #include "studies/run/open_frame.h"
 
 namespace marti::studies::frames {
@@ -80,6 +81,16 @@ std::vector<BranchStart> carried_starts(const accel::OctreeUpdate& update,
     starts[node] = holds[node] != 0 ? BranchStart::eager : BranchStart::lazy;
   }
   return starts;
+}
+
+processors::program::Frame trace_pose(const keys::FrameConfig& config, const PosedFrame& pose,
+                                      const accel::TriangleSet& triangles, const accel::Structure& structure,
+                                      sim::WorkMeter& meter) {
+  run::refuse_beyond_memory(config, pose.scene, triangles, structure);
+  processors::program::RenderOptions options = config.render;
+  options.record = true;
+  options.meter = &meter;
+  return processors::program::render(pose.scene, triangles, structure, options);
 }
 
 FrameSequence::FrameSequence(const keys::FrameConfig& config)

@@ -11,9 +11,11 @@
 #include "accel/octree.h"
 #include "accel/octree_update.h"
 #include "accel/structure.h"
+#include "processors/program/render.h"
 #include "processors/walk/build_start.h"
 #include "scenes/animated.h"
 #include "scenes/scene.h"
+#include "sim/work_meter.h"
 #include "studies/keys/frame_keys.h"
 
 namespace marti::studies::frames {
@@ -54,6 +56,12 @@ struct PosedFrame {
   std::vector<std::uint32_t>
       moved;  ///< primitives that moved since the frame before, ascending; none in the first
 };
+
+/// Traces a pose and records its log. Throws UserError where its memory does not suffice, and Stopped after
+/// `meter` was stopped.
+[[nodiscard]] processors::program::Frame trace_pose(const keys::FrameConfig& config, const PosedFrame& pose,
+                                                    const accel::TriangleSet& triangles,
+                                                    const accel::Structure& structure, sim::WorkMeter& meter);
 
 /// A scene that stands still has the same pose in every frame.
 class FrameSequence {

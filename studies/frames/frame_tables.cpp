@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <string>
 
+#include "sim/units.h"
+#include "studies/keys/frame_keys.h"
+#include "studies/tables/text_units.h"
+
 namespace marti::studies::frames {
 
 namespace {
-
-std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -25,6 +27,20 @@ sim::Ticks cycle_of(const FrameOutcome& frame, FrameWay way) {
 }
 
 }  // namespace
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+std::string subject_text(const sim::Config& config, const FramesConfig& frames, std::size_t count,
+                         std::string_view images) {
+  return fmt::format(
+      "scene    {}, {} at {:g} a second, the first is number {}\n"
+      "images   {}{}\n"
+      "machine  {} at {}, operations as \"{}\"\n",
+      frames.frame.scene, tables::counted(count, "frame"), frames.frame.frames.rate,
+      frames.frame.frames.first, keys::size_text(frames.frame.render), images,
+      tables::counted(frames.machine.all_nodes(), "node"),
+      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"));
+}
 
 TreeChange change_of(const FrameTree& tree) {
   TreeChange change;

@@ -1,11 +1,16 @@
 // The tables of `marti study frames`.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 
+#include "sim/config.h"
 #include "studies/frames/frame_sequence.h"
 #include "studies/frames/frame_ways.h"
+#include "studies/frames/frames_config.h"
 #include "studies/tables/table.h"
 
 namespace marti::studies::frames {
@@ -36,6 +41,14 @@ struct FrameOutcome {
   double update_seconds = 0.0;  ///< host: the tree by update
   WayOutcomes ways;
 };
+
+/// As the tables have it.
+[[nodiscard]] std::string hash_text(std::uint64_t hash);
+
+/// The lines of a report about its `count` frames, its images and its machine. `images`: what is said of
+/// these beside their size.
+[[nodiscard]] std::string subject_text(const sim::Config& config, const FramesConfig& frames,
+                                       std::size_t count, std::string_view images);
 
 /// "frames": a row for each frame: what moved, what was altered, hashes.
 [[nodiscard]] tables::Table frame_table(std::span<const FrameOutcome> frames);

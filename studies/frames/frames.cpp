@@ -78,12 +78,7 @@ class FramesStudy {
 
   processors::program::Image traced_and_timed(const PosedFrame& pose, const FrameTree& tree,
                                               FrameOutcome& outcome) {
-    run::refuse_beyond_memory(config_.frame, pose.scene, *tree.triangles, *tree.octree);
-    processors::program::RenderOptions options = config_.frame.render;
-    options.record = true;
-    options.meter = &stop_;
-    processors::program::Frame frame =
-        processors::program::render(pose.scene, *tree.triangles, *tree.octree, options);
+    processors::program::Frame frame = trace_pose(config_.frame, pose, *tree.triangles, *tree.octree, stop_);
     if (config_.verify) {
       verify(config_, pose, tree, frame);
     }
@@ -116,22 +111,16 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
   } else if (build.initial == processors::machine::InitialTree::rule) {
     initial = fmt::format("the level of rule k = {:g}", build.rule_k);
   }
-  return fmt::format(
-      "The cycle \"build, render\", frame by frame\n"
-      "scene    {}, {} at {:g} a second, the first is number {}\n"
-      "images   {}{}\n"
-      "machine  {} at {}, operations as \"{}\"\n"
-      "\n"
-      "rebuild_all      the whole tree is built before each frame\n"
-      "partial          altered branches are built anew before each frame, the rest is kept\n"
-      "dynamic          built before each frame to {}, the rest on demand ({})\n"
-      "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
-      frames.frame.scene, tables::counted(count, "frame"), frames.frame.frames.rate,
-      frames.frame.frames.first, keys::size_text(frames.frame.render),
-      frames.verify ? ", each equal to that of a tree built from nothing" : "",
-      tables::counted(frames.machine.all_nodes(), "node"),
-      sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"), initial,
-      processors::machine::sharing_names[static_cast<std::size_t>(build.sharing)]);
+  return "The cycle \"build, render\", frame by frame\n" +
+         subject_text(config, frames, count,
+                      frames.verify ? ", each equal to that of a tree built from nothing" : "") +
+         fmt::format(
+             "\n"
+             "rebuild_all      the whole tree is built before each frame\n"
+             "partial          altered branches are built anew before each frame, the rest is kept\n"
+             "dynamic          built before each frame to {}, the rest on demand ({})\n"
+             "partial_dynamic  altered branches are built anew on demand, the rest is kept as it is\n",
+             initial, processors::machine::sharing_names[static_cast<std::size_t>(build.sharing)]);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "sim/finished_parts.h"
 #include "sim/units.h"
 #include "studies/frames/frame_sequence.h"
+#include "studies/frames/frame_tables.h"
 #include "studies/keys/frame_keys.h"
 #include "studies/run/functional_run.h"
 #include "studies/tables/provenance.h"
@@ -129,23 +130,34 @@ std::vector<bool> altered(const Tree& tree, const Moved& moved) {
   return nodes;
 }
 
-/// Records that a way writes: those of all branches; those of the top level and of meshes in which something
-/// has moved; or those above what has moved.
+/// By node: whether its record is written. Those of all nodes; those of the top level and of meshes in which
+/// something has moved; or those above what has moved.
 template <class Tree>
-std::uint64_t written(const Tree& tree, const Moved& moved, RefitWay way) {
-  const accel::Topology& topology = tree.topology();
-  const std::vector<bool> above = altered(tree, moved);
+std::vector<bool> written_nodes(const Tree& tree, const Moved& moved, RefitWay way) {
+  const std::vector<accel::TopologyNode>& nodes = tree.topology().nodes;
+  if (way == RefitWay::rebuild) {
+    return std::vector<bool>(nodes.size(), true);
+  }
+  std::vector<bool> written = altered(tree, moved);
+  if (way == RefitWay::refit) {
+    return written;
+  }
   const std::size_t top = instances_of(tree).size();
+  std::fill_n(written.begin(), top, true);
+  // The roots of meshes are on one level, which no other node behind the top level's is on.
+  for (std::size_t n = top + 1; n < nodes.size(); ++n) {
+    written[n] = nodes[n].level == nodes[top].level ? written[n] : written[n - 1];
+  }
+  return written;
+}
+
+/// How many records a way writes. Leaves have none.
+template <class Tree>
+std::uint64_t records_written(const Tree& tree, const Moved& moved, RefitWay way) {
+  const std::vector<bool> written = written_nodes(tree, moved, way);
   std::uint64_t records = 0;
-  bool of_mesh = false;  // whether something in the mesh has moved of which the node is
-  for (std::size_t n = 0; n < topology.nodes.size(); ++n) {
-    const accel::TopologyNode& node = topology.nodes[n];
-    // The roots of meshes are on one level, below all of the top level and above all else.
-    of_mesh = n >= top && (n == top || node.level == topology.nodes[top].level) ? above[n] : of_mesh;
-    records +=
-        !node.leaf && (way == RefitWay::rebuild || (way == RefitWay::refit ? above[n] : n < top || of_mesh))
-            ? 1U
-            : 0U;
+  for (std::size_t n = 0; n < written.size(); ++n) {
+    records += written[n] && !tree.topology().nodes[n].leaf ? 1U : 0U;
   }
   return records;
 }
@@ -153,10 +165,6 @@ std::uint64_t written(const Tree& tree, const Moved& moved, RefitWay way) {
 Bvh refit(const Bvh& tree, const Set& moved) { return tree.refitted(moved); }
 TwoLevelBvh refit(const TwoLevelBvh& tree, const Set& moved) {
   return tree.moved(moved, TwoLevelBvh::Update::refit);
-}
-Bvh rebuild_top(const Bvh& tree, const Set& /*moved*/) { return tree; }
-TwoLevelBvh rebuild_top(const TwoLevelBvh& tree, const Set& moved) {
-  return tree.moved(moved, TwoLevelBvh::Update::rebuild);
 }
 double cost_of(const Bvh& tree) { return tree.sah_cost(); }
 double cost_of(const TwoLevelBvh& /*tree*/) { return 0.0; }
@@ -208,14 +216,14 @@ class RefitStudy {
       const accel::StructureOf<Tree> tree(make());
       of.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
       of.cost = cost_of(tree.concrete());
-      of.records = written(tree.concrete(), moved, way);
+      of.records = records_written(tree.concrete(), moved, way);
       of.bytes = of.records * accel::bvh_record_bytes(options_.node);
       if (way == RefitWay::rebuild_top) {
         sim::ensure(tree.topology().nodes.size() == rebuilt_nodes_, "a top level rebuilt gives another tree");
         of.render = outcome.of(RefitWay::rebuild).render;  // of an equal tree
         return;
       }
-      processors::program::Frame frame = traced(pose, set, tree);
+      processors::program::Frame frame = trace_pose(config_.frame, pose, *set, tree, stop_);
       if (way == RefitWay::rebuild) {
         rebuilt_nodes_ = tree.topology().nodes.size();
         outcome.branches = of.records;
@@ -229,18 +237,10 @@ class RefitStudy {
     };
     add_way(RefitWay::rebuild, [&] { return Tree::build(set, options_); });
     if constexpr (has_top) {
-      add_way(RefitWay::rebuild_top, [&] { return rebuild_top(*first_, set); });
+      add_way(RefitWay::rebuild_top, [&] { return first_->moved(set, TwoLevelBvh::Update::rebuild); });
     }
     add_way(RefitWay::refit, [&] { return refit(*first_, set); });
     return image;
-  }
-
-  processors::program::Frame traced(const PosedFrame& pose, const Set& set, const accel::Structure& tree) {
-    run::refuse_beyond_memory(config_.frame, pose.scene, *set, tree);
-    processors::program::RenderOptions options = config_.frame.render;
-    options.record = true;
-    options.meter = &stop_;
-    return processors::program::render(pose.scene, *set, tree, options);
   }
 
   const FramesConfig& config_;
@@ -271,8 +271,8 @@ tables::Table refit_frame_table(const std::vector<RefitFrame>& frames) {
        tables::text_column("hit_hash", "hash of every ray's outcome, with each tree"),
        tables::text_column("image_hash", "hash of the pixels' bits, with each tree")});
   for (const RefitFrame& frame : frames) {
-    table.add_row({frame.number, frame.seconds, frame.moved, frame.branches,
-                   fmt::format("{:016x}", frame.hit_hash), fmt::format("{:016x}", frame.image_hash)});
+    table.add_row({frame.number, frame.seconds, frame.moved, frame.branches, hash_text(frame.hit_hash),
+                   hash_text(frame.image_hash)});
   }
   return table;
 }
@@ -362,19 +362,12 @@ std::string answer_of(const std::vector<RefitFrame>& frames) {
 
 std::string refit_head(const sim::Config& config, const FramesConfig& frames,
                        const std::vector<RefitFrame>& all, bool instances) {
-  return answer_of(all) +
+  return answer_of(all) + subject_text(config, frames, all.size(), ", each equal with all trees") +
          fmt::format(
-             "scene    {}, {} at {:g} a second, the first is number {}\n"
-             "images   {}, each equal with all trees\n"
-             "machine  {} at {}, operations as \"{}\"\n"
              "\n"
              "rebuild      the tree is built for the frame\n"
              "{}"
              "refit        the first frame's tree, its boxes fitted to the frame\n",
-             frames.frame.scene, tables::counted(all.size(), "frame"), frames.frame.frames.rate,
-             frames.frame.frames.first, keys::size_text(frames.frame.render),
-             tables::counted(frames.machine.all_nodes(), "node"),
-             sim::print_frequency(config.frequency("node.clock")), config.choice_name("costs.preset"),
              instances ? "rebuild_top  the same tree; trees of meshes in which nothing moved are kept\n"
                        : "");
 }

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "sim/config.h"
-#include "sim/error.h"
 #include "studies/frames/frames_config.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/run_result.h"
 #include "studies/tables/csv.h"
+#include "tests/support/study_tables.h"
 #include "tests/support/wrong_configurations.h"
 
 namespace marti::studies {
@@ -23,6 +23,8 @@ using namespace frames;
 using namespace keys;
 using namespace run;
 using namespace tables;
+
+using test::table_of;
 
 namespace {
 
@@ -36,15 +38,6 @@ StudyOutput run(const std::string& text, int threads = 2) {
                                   static_cast<std::size_t>(threads));
   sim::Config config = sim::Config::from_text(run_schema(), text, "frames.toml");
   return run_frames(config);
-}
-
-const Table& table_of(const StudyOutput& output, std::string_view name) {
-  for (const Table& table : output.tables) {
-    if (table.name() == name) {
-      return table;
-    }
-  }
-  throw sim::InternalError("there is no table " + std::string(name));
 }
 
 TEST(Frames, GivesTheSameBytesAtAnyNumberOfThreads) {

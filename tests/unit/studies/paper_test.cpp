@@ -18,9 +18,12 @@
 #include "studies/paper/traced_run.h"
 #include "studies/run/open_frame.h"
 #include "studies/tables/csv.h"
+#include "tests/support/study_tables.h"
 #include "tests/support/wrong_configurations.h"
 
 namespace marti::tests {
+using test::table_of;
+
 namespace {
 
 using studies::paper::bytes_of;
@@ -38,15 +41,6 @@ StudyOutput run(const std::string& text, int threads = 2) {
                                   static_cast<std::size_t>(threads));
   sim::Config config = sim::Config::from_text(studies::paper::paper_schema(), text, "paper.toml");
   return studies::paper::run_paper(config);
-}
-
-const Table& table_of(const StudyOutput& output, std::string_view name) {
-  for (const Table& table : output.tables) {
-    if (table.name() == name) {
-      return table;
-    }
-  }
-  throw sim::InternalError("there is no table " + std::string(name));
 }
 
 std::int64_t integer(const Table& table, std::size_t row, std::string_view column) {

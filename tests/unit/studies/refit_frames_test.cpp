@@ -11,12 +11,12 @@
 
 #include "processors/replay/replay.h"
 #include "sim/config.h"
-#include "sim/error.h"
 #include "studies/frames/frames.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/run_result.h"
 #include "studies/tables/csv.h"
+#include "tests/support/study_tables.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/wrong_configurations.h"
 #include "tests/unit/scenes/gltf_file.h"
@@ -25,6 +25,8 @@ namespace marti::studies {
 
 using namespace frames;
 using namespace tables;
+
+using test::table_of;
 
 namespace {
 
@@ -38,22 +40,13 @@ StudyOutput study(const std::string& text) {
   return run_frames(config);
 }
 
-const Table& table_named(const StudyOutput& output, std::string_view name) {
-  for (const Table& table : output.tables) {
-    if (table.name() == name) {
-      return table;
-    }
-  }
-  throw sim::InternalError("there is no table " + std::string(name));
-}
-
 std::int64_t number(const Table& table, std::size_t row, const char* column) {
   return std::get<std::int64_t>(table.at(row, column));
 }
 
 TEST(RefitFrames, RebuiltFramesAreThoseOfRunsOfOneFrame) {
   const StudyOutput output = study(swinging + small_bvh);
-  const Table& refits = table_named(output, "refits");
+  const Table& refits = table_of(output, "refits");
   ASSERT_EQ(refits.rows().size(), 6U);
   for (std::uint32_t i = 0; i < 3; ++i) {
     sim::Config config = sim::Config::from_text(
@@ -68,9 +61,9 @@ TEST(RefitFrames, RebuiltFramesAreThoseOfRunsOfOneFrame) {
 
 TEST(RefitFrames, RefittingWritesLessAndWalksMore) {
   const StudyOutput output = study(swinging + small_bvh);
-  const Table& frames = table_named(output, "frames");
-  const Table& refits = table_named(output, "refits");
-  const Table& totals = table_named(output, "totals");
+  const Table& frames = table_of(output, "frames");
+  const Table& refits = table_of(output, "refits");
+  const Table& totals = table_of(output, "totals");
   EXPECT_EQ(number(refits, 0, "records"), number(refits, 1, "records"));  // of a first tree all are written
   EXPECT_EQ(number(refits, 0, "render"), number(refits, 1, "render"));
   std::int64_t written = 0;
@@ -87,7 +80,7 @@ TEST(RefitFrames, RefittingWritesLessAndWalksMore) {
 
 TEST(RefitFrames, WhereNothingMovesNothingIsRefitted) {
   const StudyOutput output = study("[scene]\nsource = \"tetra:3\"\n" + small_bvh);
-  const Table& refits = table_named(output, "refits");
+  const Table& refits = table_of(output, "refits");
   EXPECT_EQ(number(refits, 3, "records"), 0);
   EXPECT_EQ(number(refits, 3, "render"), number(refits, 0, "render"));
 }
@@ -109,8 +102,8 @@ TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
   const std::string text = "[scene]\nsource = \"" + file.write_glb(directory.path(), "a.glb").string() +
                            "\"\n" + small_bvh + "instances = \"kept\"\nbvh_children = \"2\"\n";
   const StudyOutput output = study(text);
-  const Table& frames = table_named(output, "frames");
-  const Table& refits = table_named(output, "refits");
+  const Table& frames = table_of(output, "frames");
+  const Table& refits = table_of(output, "refits");
   ASSERT_EQ(refits.rows().size(), 9U);
   EXPECT_EQ(number(frames, 1, "moved"), 2);
   // Three branches over four instances, and the root of their mesh.
@@ -119,7 +112,7 @@ TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
   EXPECT_EQ(number(refits, 4, "records"), 7);
   EXPECT_EQ(number(refits, 5, "records"), 3);  // the instance, and two branches above it
   EXPECT_EQ(number(refits, 4, "render"), number(refits, 3, "render"));
-  EXPECT_EQ(csv_of(refits), csv_of(table_named(study(text), "refits")));
+  EXPECT_EQ(csv_of(refits), csv_of(table_of(study(text), "refits")));
 }
 
 TEST(RefitFrames, WrongConfigurationsAreRefused) {
