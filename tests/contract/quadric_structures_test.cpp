@@ -23,13 +23,13 @@ using accel::Hit;
 using accel::Ray;
 using accel::TriangleSet;
 
-struct Built {
+struct BuiltMix {
   std::string name;
   std::unique_ptr<accel::Structure> structure;
 };
 
-std::vector<Built> build_all(const std::shared_ptr<const TriangleSet>& set) {
-  std::vector<Built> all;
+std::vector<BuiltMix> build_mixes(const std::shared_ptr<const TriangleSet>& set) {
+  std::vector<BuiltMix> all;
   const auto add = [&](std::string_view kind, std::uint32_t max_objects, std::uint32_t max_level,
                        double density) {
     accel::StructureOptions options;
@@ -66,7 +66,7 @@ std::string text_of(const Ray& ray) {
 class MixedContract {
  public:
   explicit MixedContract(std::shared_ptr<const TriangleSet> set)
-      : set_(std::move(set)), oracle_(set_), all_(build_all(set_)) {}
+      : set_(std::move(set)), oracle_(set_), all_(build_mixes(set_)) {}
 
   [[nodiscard]] const TriangleSet& set() const { return *set_; }
   [[nodiscard]] const scenes::Bounds& root() const { return all_.back().structure->bounds(); }
@@ -83,7 +83,7 @@ class MixedContract {
       ASSERT_EQ(expected.v, 0.0);
       ASSERT_EQ(expected.w, 0.0);
     }
-    for (const Built& built : all_) {
+    for (const BuiltMix& built : all_) {
       ASSERT_TRUE(test::same_bits(expected, built.structure->closest(ray)))
           << built.name << ": " << text_of(ray);
       ASSERT_EQ(expected.found(), built.structure->occluded(ray)) << built.name << ": " << text_of(ray);
@@ -93,20 +93,20 @@ class MixedContract {
  private:
   std::shared_ptr<const TriangleSet> set_;
   accel::BruteForce oracle_;
-  std::vector<Built> all_;
+  std::vector<BuiltMix> all_;
   std::uint64_t hits_ = 0;
   std::uint64_t quadrics_hit_ = 0;
 };
 
-struct Soup {
+struct Mix {
   double offset;
   bool huge;
   bool triangles;
 };
-class MixedSoup : public ::testing::TestWithParam<Soup> {};
+class MixedSoup : public ::testing::TestWithParam<Mix> {};
 
 TEST_P(MixedSoup, SameHitsAsBruteForce) {
-  const Soup& soup = GetParam();
+  const Mix& soup = GetParam();
   MixedContract contract(std::make_shared<const TriangleSet>(
       soup.triangles ? tests::hostile_soup(soup.offset, 31) : std::vector<accel::TriangleCorners>{},
       hostile_quadrics(soup.offset, 37, soup.huge)));
@@ -134,10 +134,10 @@ TEST_P(MixedSoup, SameHitsAsBruteForce) {
   EXPECT_GT(contract.quadrics_hit(), test::cases(5000U));
 }
 INSTANTIATE_TEST_SUITE_P(Structures, MixedSoup,
-                         ::testing::Values(Soup{0.0, false, true}, Soup{0.0, false, false},
-                                           Soup{1e3, false, true}, Soup{-1e6, false, true},
-                                           Soup{1e9, false, true}, Soup{0.0, true, true},
-                                           Soup{1e3, true, false}),
+                         ::testing::Values(Mix{0.0, false, true}, Mix{0.0, false, false},
+                                           Mix{1e3, false, true}, Mix{-1e6, false, true},
+                                           Mix{1e9, false, true}, Mix{0.0, true, true},
+                                           Mix{1e3, true, false}),
                          [](const auto& tested) { return std::to_string(tested.index); });
 
 // One quadric alone: scaling it by 2^-60 to 2^60 scales the hits, bit for bit.

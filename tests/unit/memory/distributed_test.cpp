@@ -16,14 +16,15 @@
 namespace marti::memory {
 namespace {
 
-using test::memory_class;
-using Issue = test::IssuedTransaction;
+using marti::test::memory_class;
+using Issue = marti::test::IssuedTransaction;
 
-class Ports final : public test::Ports {
+class DistributedPorts final : public marti::test::Ports {
  public:
-  Ports(const DistributedConfig& config, std::vector<Issue> issues, std::uint32_t ports)
-      : test::Ports([&](const InterconnectSite& site) { return std::make_unique<Distributed>(config, site); },
-                    std::move(issues), ports),
+  DistributedPorts(const DistributedConfig& config, std::vector<Issue> issues, std::uint32_t ports)
+      : marti::test::Ports(
+            [&](const InterconnectSite& site) { return std::make_unique<Distributed>(config, site); },
+            std::move(issues), ports),
         memory(dynamic_cast<const Distributed&>(*interconnect)) {}
 
   const Distributed& memory;
@@ -40,7 +41,7 @@ DistributedConfig four_nodes() {
 
 TEST(Distributed, AnothersMemoryTakesARequestAndItsData) {
   // Node 3 is two hops from node 0. The request: 2 hops and 2 beats; the data: 2 hops and (8 + 32) / 4 beats.
-  Ports ports(four_nodes(), {{0, {0, 96, 32}}}, 4);
+  DistributedPorts ports(four_nodes(), {{0, {0, 96, 32}}}, 4);
   const Service& service = ports.services[0][0];
   EXPECT_EQ(service.done, (40 + 20) + (40 + 40) + (40 + 100));
   EXPECT_EQ(service.bank, 40);
@@ -55,7 +56,7 @@ TEST(Distributed, AnothersMemoryTakesARequestAndItsData) {
 }
 
 TEST(Distributed, AWriteIsDoneWhenItsHomeHasIt) {
-  Ports ports(four_nodes(), {{0, {0, 32, 4}, true}}, 4);
+  DistributedPorts ports(four_nodes(), {{0, {0, 32, 4}, true}}, 4);
   EXPECT_EQ(ports.written[0][0], 20 + 30 + 40 + 10) << "one hop, 12 bytes of message, access and a beat";
   EXPECT_EQ(ports.memory.network_statistics()->messages, 1);
 }
@@ -108,7 +109,7 @@ RC_GTEST_PROP(Distributed, EqualsAListOfArrivalsOverAnIdealNetwork, (std::uint64
     access.sequence = write ? 1 + writes[port]++ : 0;
     accesses.push_back(access);
   }
-  const Ports ports(config, issues, all);
+  const DistributedPorts ports(config, issues, all);
 
   // At one instant: own accesses first (reads and writes in the order made), then messages by port.
   const auto rank = [](const Access& a) {
@@ -157,7 +158,7 @@ RC_GTEST_PROP(Distributed, EqualsAListOfArrivalsOverAnIdealNetwork, (std::uint64
 
 TEST(Distributed, RefusesWhatCannotBeSpread) {
   sim::Engine engine;
-  Ports client(four_nodes(), {}, 4);
+  DistributedPorts client(four_nodes(), {}, 4);
   for (const auto& spoil :
        {+[](DistributedConfig& c) { c.width = 0; }, +[](DistributedConfig& c) { c.interleave = 48; },
         +[](DistributedConfig& c) { c.header_bytes = 0; },

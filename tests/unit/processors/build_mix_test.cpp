@@ -103,7 +103,7 @@ class Measurement {
 };
 
 // Within 3 %, or a fiftieth of an operation where there is next to none.
-void expect_close(const char* part, const OperationMix& measured, const OperationMix& table) {
+void expect_close_mix(const char* part, const OperationMix& measured, const OperationMix& table) {
   for (const auto member : {&OperationMix::add, &OperationMix::multiply, &OperationMix::divide,
                             &OperationMix::square_root, &OperationMix::compare, &OperationMix::integer}) {
     const auto expected = static_cast<double>(table.*member);
@@ -116,9 +116,9 @@ TEST(BuildMixes, TheTableIsWhatTheBuilderDoes) {
   const auto octree = accel::Octree::build(std::make_shared<const accel::TriangleSet>(scene),
                                            {.max_objects = 9, .max_level = 12});
   const MeasuredBuild measured = Measurement(octree).run();
-  expect_close("listed", measured.mixes.listed, build_mixes().listed);
-  expect_close("overlap", measured.mixes.overlap, build_mixes().overlap);
-  expect_close("child", measured.mixes.child, build_mixes().child);
+  expect_close_mix("listed", measured.mixes.listed, build_mixes().listed);
+  expect_close_mix("overlap", measured.mixes.overlap, build_mixes().overlap);
+  expect_close_mix("child", measured.mixes.child, build_mixes().child);
   // The counting split equals the builder's.
   const accel::Topology& topology = octree.topology();
   std::uint64_t listed = 0;

@@ -229,7 +229,7 @@ TEST(Energy, AreaOfASimtNodeIsThatOfItsLanesAndItsUnit) {
 }
 
 TEST(Energy, OfWhatSwitchesGrowsWithTheSquareOfTheVoltage) {
-  test::Random random(3);
+  marti::test::Random random(3);
   MachineConfig machine = without_figures();
   machine.energy.figures = energy_figures(EnergyPreset::nm45);
   machine.energy.figures.l1 = {20.0, 30.0, 0.5};
@@ -239,10 +239,10 @@ TEST(Energy, OfWhatSwitchesGrowsWithTheSquareOfTheVoltage) {
           machine.energy.figures.load = machine.energy.figures.store = 2.0;
   machine.energy.figures.wire = 0.125;
   EnergyCounts counts;
-  counts.steps.branches = test::pick(random, 1, 1'000'000);
-  counts.steps.tests = test::pick(random, 1, 1'000'000);
-  counts.l1[0] = {test::pick(random, 1, 1'000'000), 1000};
-  counts.interconnect_bytes = test::pick(random, 1, 1'000'000);
+  counts.steps.branches = marti::test::pick(random, 1, 1'000'000);
+  counts.steps.tests = marti::test::pick(random, 1, 1'000'000);
+  counts.l1[0] = {marti::test::pick(random, 1, 1'000'000), 1000};
+  counts.interconnect_bytes = marti::test::pick(random, 1, 1'000'000);
   counts.memory_reads = 1000;
   counts.end = 1'000'000;
   const EnergyResult nominal = energy_of(machine, counts);
@@ -375,7 +375,7 @@ TEST(DramEnergy, OfEachPresetIsItsOwnAndHasASource) {
 TEST(KnownCaches, OthersAreRefused) {
   MachineConfig machine = without_figures();
   machine.energy.figures.l1 = {};
-  const auto refusal = [&machine] { return test::user_error_of([&] { check_energy(machine); }); };
+  const auto refusal = [&machine] { return marti::test::user_error_of([&] { check_energy(machine); }); };
   EXPECT_EQ(refusal(), "no UserError");
   machine.cache.cache.size = 1024;
   EXPECT_EQ(
@@ -409,7 +409,7 @@ TEST(Energy, RefusesFiguresOutOfRange) {
   const auto refusal = [](const auto& change) {
     MachineConfig machine = without_figures();
     change(machine.energy);
-    return test::user_error_of([&] { check_energy(machine); });
+    return marti::test::user_error_of([&] { check_energy(machine); });
   };
   EXPECT_EQ(refusal([](EnergyConfig& e) { e.figures.add = -1.0; }), "energy.add: must be from 0 to 1e+05");
   EXPECT_TRUE(refusal([](EnergyConfig& e) { e.figures.wire = std::nan(""); }).starts_with("energy.wire"));
@@ -431,48 +431,48 @@ TEST(Energy, ThatDoesNotFitIsRefused) {
   counts.end *= std::numeric_limits<std::int64_t>::max() / second;
   EXPECT_GT(energy_of(machine, counts).leakage, std::numeric_limits<std::int64_t>::max() / 2);
   counts.end *= 2;
-  const std::string refusal = test::user_error_of([&] { (void)energy_of(machine, counts); });
+  const std::string refusal = marti::test::user_error_of([&] { (void)energy_of(machine, counts); });
   EXPECT_TRUE(refusal.starts_with("energy.preset: the energy of leakage does not fit 64 bits")) << refusal;
   // Parts that fit one by one, but not together.
   machine.energy.figures.memory_access = 1e9;
   counts.end /= 2;
   counts.memory_reads = std::numeric_limits<std::int64_t>::max() / 2 / 1'000'000'000'000;
-  EXPECT_TRUE(test::user_error_of([&] {
+  EXPECT_TRUE(marti::test::user_error_of([&] {
                 (void)energy_of(machine, counts);
               }).starts_with("energy.preset: the energy of the frame"));
   counts.memory_reads = std::numeric_limits<std::int64_t>::max();
-  EXPECT_TRUE(test::user_error_of([&] {
+  EXPECT_TRUE(marti::test::user_error_of([&] {
                 (void)energy_of(machine, counts);
               }).starts_with("energy.preset: the energy of memory"));
 }
 
 // A log and a machine of any scheme that walks it, with any second level, contexts and building.
-struct Case {
+struct EnergyCase {
   WorkLog log;
   MachineConfig machine;
 };
 
-Case random_case(test::Random& random) {
-  Case one{test::random_tree_log(random, 9, 7), test::random_machine(random)};
-  switch (test::pick(random, 0, 4)) {
+EnergyCase random_energy_case(marti::test::Random& random) {
+  EnergyCase one{marti::test::random_tree_log(random, 9, 7), marti::test::random_machine(random)};
+  switch (marti::test::pick(random, 0, 4)) {
     case 0:
-      test::add_random_contexts(random, false, one.machine);
+      marti::test::add_random_contexts(random, false, one.machine);
       break;
     case 1:
-      test::add_random_build(random, one.machine);
+      marti::test::add_random_build(random, one.machine);
       break;
     case 2:
-      one.log = test::random_ray_trees(random, 6, 5, 6, 3);
-      test::make_random_pipeline(random, one.machine);
+      one.log = marti::test::random_ray_trees(random, 6, 5, 6, 3);
+      marti::test::make_random_pipeline(random, one.machine);
       break;
     case 3:
-      one.log = test::random_ray_trees(random, 6, 5, 6, 3);
-      test::make_random_space(random, one.machine);
+      one.log = marti::test::random_ray_trees(random, 6, 5, 6, 3);
+      marti::test::make_random_space(random, one.machine);
       break;
     default:
-      test::add_random_second_level(random, one.machine);
+      marti::test::add_random_second_level(random, one.machine);
   }
-  test::add_random_dram(random, one.machine);
+  marti::test::add_random_dram(random, one.machine);
   return one;
 }
 
@@ -503,8 +503,8 @@ std::int64_t accesses_of(const MachineConfig& machine, const MachineResult& resu
 
 TEST(Energy, IsThatOfWhatTheCountersSayOnRandomMachines) {
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
-    test::Random random(seed);
-    Case one = random_case(random);
+    marti::test::Random random(seed);
+    EnergyCase one = random_energy_case(random);
     MachineConfig& machine = one.machine;
     const MachineResult plain = replay::replay(one.log, machine);
     ASSERT_FALSE(plain.energy.has_value());

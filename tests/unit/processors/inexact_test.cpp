@@ -40,7 +40,7 @@ MachineConfig random_sampled(test::Random& random) {
   return machine;
 }
 
-std::vector<std::uint64_t> everything(std::uint64_t packets) {
+std::vector<std::uint64_t> all_packets(std::uint64_t packets) {
   std::vector<std::uint64_t> all(packets);
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -55,7 +55,7 @@ RC_GTEST_PROP(Inexact, AStrippedLogGivesTheSameSample, (std::uint64_t seed)) {
     return;
   }
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
-  std::vector<std::uint64_t> some = everything(packets);
+  std::vector<std::uint64_t> some = all_packets(packets);
   std::erase_if(some, [&](std::uint64_t packet) { return packet != 0 && test::pick(random, 0, 2) != 0; });
   for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
     const PacketSample sample(some, packets, warm_up);
@@ -74,7 +74,7 @@ RC_GTEST_PROP(Inexact, ASampleOfAllPacketsIsExact, (std::uint64_t seed)) {
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
   const MachineResult exact = replay::replay(log, machine, {.keep_read_events = true});
   for (const std::uint64_t warm_up : {std::uint64_t{0}, std::uint64_t{1}, PacketSample::all_before}) {
-    const PacketSample sample(everything(packets), packets, warm_up);
+    const PacketSample sample(all_packets(packets), packets, warm_up);
     const MachineResult sampled = replay::replay(log, machine, {.sample = &sample});
     expect_equal(exact, sampled);
     RC_ASSERT(!::testing::Test::HasFatalFailure());
@@ -127,7 +127,7 @@ RC_GTEST_PROP(Inexact, FullWarmingOfOneNodeGivesEachPacketsOwnMisses, (std::uint
   machine.clusters = 1;
   machine.nodes = 1;
   const std::uint64_t packets = PacketList(log.width, log.height, machine.packets).size();
-  const PacketSample all(everything(packets), packets, 0);
+  const PacketSample all(all_packets(packets), packets, 0);
   const MachineResult exact = replay::replay(log, machine, {.sample = &all});
   std::vector<std::uint64_t> chosen;
   for (std::uint64_t packet = 0; packet < packets; ++packet) {

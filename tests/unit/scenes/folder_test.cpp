@@ -13,8 +13,8 @@ namespace marti::scenes {
 namespace {
 
 using testing::has_note;
+using testing::triangle;
 
-const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 const std::string points =
     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
     "z\nend_header\n"

@@ -47,7 +47,7 @@ std::string refusal(const std::filesystem::path& path) {
 using Corners = std::array<std::array<double, 3>, 3>;
 
 // The triangles in an order that does not depend on their own, nor on the corner that each begins with.
-[[maybe_unused]] std::vector<Corners> sorted_triangles(const Scene& scene) {
+[[maybe_unused]] std::vector<Corners> sorted_corners(const Scene& scene) {
   std::vector<Corners> all;
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
     Corners corners;
@@ -94,7 +94,7 @@ TEST(GltfCompressed, ViewsOfBytesThatAreNotThereAreRefused) {
 TEST(Meshopt, AFileOfGltfpackHasTheTrianglesOfItsUncompressedTwin) {
   const Scene plain = load_gltf(files / "quantized.glb", {}, {});
   const Scene compressed = load_gltf(files / "meshopt.glb", {}, {});
-  EXPECT_EQ(sorted_triangles(plain), sorted_triangles(compressed));
+  EXPECT_EQ(sorted_corners(plain), sorted_corners(compressed));
 }
 
 // The mesh with its two views compressed; `mode` is that of the indices.
@@ -160,12 +160,12 @@ TEST(Meshopt, GivesTheMeshExactly) {
               built.render(options).hit_hash);
   }
   const Scene turned = folder.open("turned.glb", with_meshopt(mesh, "TRIANGLES").glb());
-  EXPECT_EQ(sorted_triangles(turned), sorted_triangles(plain));
+  EXPECT_EQ(sorted_corners(turned), sorted_corners(plain));
   // A .gltf file, whose buffers have names.
   GltfFile file = with_meshopt(mesh, "TRIANGLES");
   file.json["buffers"][0]["uri"] = "data.bin";
   folder.write("data.bin", file.bin);
-  EXPECT_EQ(sorted_triangles(folder.open("a.gltf", file.json.dump())), sorted_triangles(plain));
+  EXPECT_EQ(sorted_corners(folder.open("a.gltf", file.json.dump())), sorted_corners(plain));
 }
 
 TEST(Meshopt, EveryFaultIsRefused) {
@@ -276,10 +276,10 @@ TEST(Draco, GivesTheMeshExactlyWithoutQuantization) {
   const SceneFolder folder;
   for (const std::uint32_t seed : {6U, 7U}) {
     const RandomMesh mesh(seed, 7);
-    const std::vector<Corners> plain = sorted_triangles(folder.open("plain.glb", mesh.gltf().glb()));
+    const std::vector<Corners> plain = sorted_corners(folder.open("plain.glb", mesh.gltf().glb()));
     for (const int method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
       const Scene scene = folder.open("draco.glb", with_draco(mesh, method, 0).glb());
-      EXPECT_EQ(sorted_triangles(scene), plain) << method;
+      EXPECT_EQ(sorted_corners(scene), plain) << method;
     }
   }
 }

@@ -54,7 +54,7 @@ std::function<void(GltfFile&)> times(const std::vector<float>& values) {
 
 json& attributes(GltfFile& file) { return file.primitive()["attributes"]; }
 
-const std::vector<Fault>& faults() {
+const std::vector<Fault>& motion_faults() {
   static const std::vector<Fault> list = {
       {"missing sampler", "sampler 9", put("/animations/0/channels/0/sampler", 9)},
       {"negative sampler", "sampler -1", put("/animations/0/channels/0/sampler", -1)},
@@ -185,7 +185,7 @@ TEST(HostileMotion, TheUndamagedFileLoads) {
 
 TEST(HostileMotion, EveryFaultIsRefusedWithPathAndReason) {
   const test::TemporaryDirectory directory;
-  for (const Fault& fault : faults()) {
+  for (const Fault& fault : motion_faults()) {
     SCOPED_TRACE(fault.name);
     GltfFile file = everything();
     fault.damage(file);

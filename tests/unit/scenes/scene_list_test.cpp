@@ -16,8 +16,7 @@ namespace marti::scenes {
 namespace {
 
 using testing::has_note;
-
-const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+using testing::triangle;
 
 Scene open_list(const testing::SceneFolder& folder, const std::string& list) {
   return open_scene(list, {folder.path(), {}}, {});

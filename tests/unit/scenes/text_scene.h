@@ -11,6 +11,9 @@
 
 namespace marti::scenes::testing {
 
+/// An OBJ file of one triangle.
+inline const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
 /// A folder for files of one test.
 class SceneFolder {
  public:

@@ -10,7 +10,7 @@ namespace {
 
 using test::user_error_of;
 
-Schema example() {
+Schema free_schema() {
   Schema schema;
   schema.section("cache", "a cache");
   schema.size("cache.size", "16 KiB", {"1 B", "1 GiB"}, "its size");
@@ -21,14 +21,14 @@ Schema example() {
   return schema;
 }
 
-Config read(std::string_view text) { return Config::from_text(example(), text, "a.toml"); }
+Config read_free(std::string_view text) { return Config::from_text(free_schema(), text, "a.toml"); }
 
-std::string error_of(std::string_view text) {
-  return user_error_of([&] { (void)read(text); });
+std::string free_error_of(std::string_view text) {
+  return user_error_of([&] { (void)read_free(text); });
 }
 
 TEST(FreeSection, KeepsWhatIsWrittenInItsOrderWithItsLines) {
-  const Config config = read(
+  const Config config = read_free(
       "[sweep.axes]\n"
       "zebra = [1, 2.5, \"x\",\n true]\n"
       "\"cache.ways\" = 3\n"
@@ -67,26 +67,27 @@ TEST(FreeSection, KeepsWhatIsWrittenInItsOrderWithItsLines) {
 }
 
 TEST(FreeSection, IsEmptyWhereItIsNotGiven) {
-  EXPECT_TRUE(read("").free_section("sweep").empty());
-  EXPECT_EQ(read("").free_section_line("sweep"), 0);
-  EXPECT_TRUE(read("[sweep]\n").free_section("sweep").empty());
-  EXPECT_EQ(read("\n[sweep]\n").free_section_line("sweep"), 2);
+  EXPECT_TRUE(read_free("").free_section("sweep").empty());
+  EXPECT_EQ(read_free("").free_section_line("sweep"), 0);
+  EXPECT_TRUE(read_free("[sweep]\n").free_section("sweep").empty());
+  EXPECT_EQ(read_free("\n[sweep]\n").free_section_line("sweep"), 2);
 }
 
 TEST(FreeSection, RefusesWhatItCannotHold) {
-  EXPECT_EQ(error_of("[sweep.axes]\na = nan\n"), "a.toml:2: sweep.axes.a: must not be the real nan");
-  EXPECT_EQ(error_of("[sweep]\na = [1,\n 1979-05-27]\n"), "a.toml:3: sweep.a: must not be a date or time");
-  EXPECT_EQ(error_of("[[sweep.zip]]\na = inf\n"), "a.toml:2: sweep.zip.a: must not be the real inf");
-  EXPECT_EQ(error_of("sweep = 3\n"),
+  EXPECT_EQ(free_error_of("[sweep.axes]\na = nan\n"), "a.toml:2: sweep.axes.a: must not be the real nan");
+  EXPECT_EQ(free_error_of("[sweep]\na = [1,\n 1979-05-27]\n"),
+            "a.toml:3: sweep.a: must not be a date or time");
+  EXPECT_EQ(free_error_of("[[sweep.zip]]\na = inf\n"), "a.toml:2: sweep.zip.a: must not be the real inf");
+  EXPECT_EQ(free_error_of("sweep = 3\n"),
             "a.toml:1: sweep: is a section and has no value of its own; its keys are sweep.filter");
-  EXPECT_EQ(error_of("[sweep]\nfilter = 3\n"),
+  EXPECT_EQ(free_error_of("[sweep]\nfilter = 3\n"),
             "a.toml:2: sweep.filter: must be a text in quotation marks, not the integer 3");
-  EXPECT_NE(error_of("[swep]\na = 1\n").find("unknown"), std::string::npos);
-  EXPECT_NE(error_of("[sweep]\na = " + std::string(2000, '[') + std::string(2000, ']')), "no UserError");
+  EXPECT_NE(free_error_of("[swep]\na = 1\n").find("unknown"), std::string::npos);
+  EXPECT_NE(free_error_of("[sweep]\na = " + std::string(2000, '[') + std::string(2000, ']')), "no UserError");
 }
 
 TEST(Variant, HasTheValuesOfItsSettingsAndNamesTheirLines) {
-  const Config config = read("\ncache.size = \"8 KiB\"\n[sweep]\nways = 5\nsize = \"2 GiB\"\n");
+  const Config config = read_free("\ncache.size = \"8 KiB\"\n[sweep]\nways = 5\nsize = \"2 GiB\"\n");
   const std::size_t ways = *config.schema().find("cache.ways");
   const std::size_t size = *config.schema().find("cache.size");
   (void)config.size("cache.size");
@@ -120,14 +121,14 @@ RC_GTEST_PROP(Variant, IsTheConfigurationOfTheSameValues, ()) {
   const auto size = *rc::gen::inRange<std::int64_t>(1, 1 << 30);
   const auto ways = *rc::gen::inRange<std::int64_t>(1, 65);
   const auto replacement = *rc::gen::element<std::string>("lru", "fifo");
-  const Config base = read("cache.ways = 7\n");
+  const Config base = read_free("cache.ways = 7\n");
   const std::vector<Setting> settings = {{*base.schema().find("cache.size"), {size}, 1, {}},
                                          {*base.schema().find("cache.ways"), {ways}, 1, {}},
                                          {*base.schema().find("cache.replacement"), {replacement}, 1, {}}};
   const Config variant = base.with(settings);
   const Config written =
-      read("cache = { size = " + std::to_string(size) + ", ways = " + std::to_string(ways) +
-           ", replacement = \"" + replacement + "\" }\n");
+      read_free("cache = { size = " + std::to_string(size) + ", ways = " + std::to_string(ways) +
+                ", replacement = \"" + replacement + "\" }\n");
   for (const Config* config : {&variant, &written}) {
     for (const std::string& key : config->schema().names()) {
       (void)config->values(key);

@@ -29,7 +29,7 @@ sim::Config config_of(const std::string& text) {
   return sim::Config::from_text(error_schema(), text, "error.toml");
 }
 
-const std::string small =
+const std::string small_study =
     "scene.source = \"gears:1\"\nimage = { width = 40, height = 32, max_depth = 4, samples = 4 }\n"
     "machine.nodes = 4\nerror = { within = [0.2, 1.0], divisors = [2], side = 20, samples = [1, 4, 16], "
     "depths = [1, 2, 3], weights = [0.1, 0.5], voxel_cuts = [16.0], repeats = 2 }\n";
@@ -48,7 +48,7 @@ std::vector<Setting> measured(const ErrorConfig& config) {
 }
 
 const std::vector<Setting>& gears() {
-  static const ErrorConfig config = read(small);
+  static const ErrorConfig config = read(small_study);
   static const std::vector<Setting> settings = measured(config);
   return settings;
 }
@@ -106,7 +106,7 @@ TEST(ErrorStudy, MoreSamplesAndDeeperRaysAreNearer) {
 }
 
 TEST(ErrorStudy, TheSameAgainButForRunTimes) {
-  const std::vector<Setting> again = measured(read(small));
+  const std::vector<Setting> again = measured(read(small_study));
   ASSERT_EQ(again.size(), gears().size());
   for (std::size_t i = 0; i < again.size(); ++i) {
     EXPECT_EQ(again[i].error(), gears()[i].error()) << again[i].name;

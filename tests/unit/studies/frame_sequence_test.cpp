@@ -19,7 +19,7 @@ using namespace keys;
 
 namespace {
 
-FrameConfig swing(std::uint32_t count, std::uint32_t first, double rate) {
+FrameConfig swing_frames(std::uint32_t count, std::uint32_t first, double rate) {
   FrameConfig config;
   config.scene = std::string(MARTI_SOURCE) + "/configs/scenes/swing.glb";
   config.frames = {count, first, rate};
@@ -27,7 +27,7 @@ FrameConfig swing(std::uint32_t count, std::uint32_t first, double rate) {
 }
 
 TEST(FrameSequence, FramesComeInOrderAtTheirTimes) {
-  const FrameSequence sequence(swing(5, 3, 16.0));
+  const FrameSequence sequence(swing_frames(5, 3, 16.0));
   EXPECT_EQ(sequence.size(), 5U);
   std::vector<std::uint32_t> numbers;
   sequence.visit([&](const PosedFrame& frame) {
@@ -40,7 +40,7 @@ TEST(FrameSequence, FramesComeInOrderAtTheirTimes) {
 }
 
 TEST(FrameSequence, WhatIsNotListedHasNotMoved) {
-  const FrameSequence sequence(swing(8, 0, 8.0));
+  const FrameSequence sequence(swing_frames(8, 0, 8.0));
   std::vector<scenes::Scene> poses;
   std::uint32_t frames_that_moved = 0;
   sequence.visit([&](const PosedFrame& frame) {
@@ -70,7 +70,7 @@ TEST(FrameSequence, WhatIsNotListedHasNotMoved) {
 }
 
 TEST(FrameSequence, TheBoxIsTightAroundAllFrames) {
-  const FrameSequence sequence(swing(8, 0, 8.0));
+  const FrameSequence sequence(swing_frames(8, 0, 8.0));
   scenes::Bounds all;
   sequence.visit([&](const PosedFrame& frame) {
     const scenes::Bounds bounds = scenes::bounds_of(frame.scene);

@@ -71,7 +71,7 @@ TEST(ShareNamed, IsANumberOfSeveral) {
   }
 }
 
-SweepPlan plan_of(const std::string& axes) {
+SweepPlan shared_plan(const std::string& axes) {
   sim::Config config = sim::Config::from_text(
       sweep_schema(), "[scene]\nsource = \"tetra:1\"\n[image]\nwidth = 8\nheight = 8\n[sweep.axes]\n" + axes,
       "sweep");
@@ -109,11 +109,11 @@ void expect_dealt(const SweepPlan& plan, std::uint32_t processes) {
 
 TEST(PartOf, AllTogetherHaveEachMachineOnce) {
   // Some of these need one replay only: energies, and widths that move a line in as many beats.
-  const SweepPlan plan = plan_of(
+  const SweepPlan plan = shared_plan(
       "image.max_depth = [1, 2]\nmachine.nodes = [1, 2, 3, 8]\ninterconnect.width = [16, 32, 64]\n"
       "cache.line = [32, 64]\n");
   const SweepPlan many_frames =
-      plan_of("image.width = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\nmachine.nodes = [1, 2]\n");
+      shared_plan("image.width = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\nmachine.nodes = [1, 2]\n");
   for (const std::uint32_t processes : {1U, 2U, 3U, 7U, 100U}) {
     expect_dealt(plan, processes);
     expect_dealt(many_frames, processes);
@@ -122,7 +122,7 @@ TEST(PartOf, AllTogetherHaveEachMachineOnce) {
 
 TEST(PartOf, KeepsTheMachinesOfAFrameTogetherWhereThereAreManyFrames) {
   const SweepPlan plan =
-      plan_of("image.width = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\nmachine.nodes = [1, 2]\n");
+      shared_plan("image.width = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]\nmachine.nodes = [1, 2]\n");
   std::size_t frames = 0;
   for (std::uint32_t number = 1; number <= 3; ++number) {
     frames += part_of(plan, {number, 3}, [](const SweepMachine&) { return false; }).frames.size();
@@ -131,7 +131,7 @@ TEST(PartOf, KeepsTheMachinesOfAFrameTogetherWhereThereAreManyFrames) {
 }
 
 TEST(PartOf, LeavesOutWhatIsDone) {
-  const SweepPlan plan = plan_of("machine.nodes = [1, 2, 3, 4, 5, 6]\n");
+  const SweepPlan plan = shared_plan("machine.nodes = [1, 2, 3, 4, 5, 6]\n");
   const SweepPlan all = part_of(plan, {2, 2}, [](const SweepMachine&) { return false; });
   const SweepPlan rest = part_of(
       plan, {2, 2}, [&](const SweepMachine& machine) { return machine.key == all.machines.front().key; });

@@ -25,7 +25,7 @@ using test::made_plan;
 using test::TemporaryDirectory;
 using test::user_error_of;
 
-constexpr std::size_t machines = 2;
+constexpr std::size_t damaged_machines = 2;
 
 void add_cell(std::string& text, const Cell& cell) {
   text += std::to_string(cell.index());
@@ -93,7 +93,7 @@ std::string figures_of(const fs::path& file) {
 class DamagedStore : public testing::Test {
  protected:
   DamagedStore() {
-    test::write_store(file_, made_plan(machines), test::plain_row);
+    test::write_store(file_, made_plan(damaged_machines), test::plain_row);
     bytes_ = sim::read_file(file_, std::int64_t{1} << 30);
   }
 
@@ -104,8 +104,9 @@ class DamagedStore : public testing::Test {
       SqliteConnection connection(file_, SqliteConnection::Access::write);
       connection.execute(change);
     }
-    for (const std::string& message : {user_error_of([&] { (void)figures_of(file_); }),
-                                       user_error_of([&] { SweepStore(file_, made_plan(machines)); })}) {
+    for (const std::string& message : {user_error_of([&] { (void)figures_of(file_); }), user_error_of([&] {
+                                         SweepStore(file_, made_plan(damaged_machines));
+                                       })}) {
       EXPECT_TRUE(message.starts_with(file_.string())) << change << "\n" << message;
       EXPECT_NE(message.find(what), std::string::npos) << change << "\n" << message;
     }
@@ -138,7 +139,7 @@ TEST_F(DamagedStore, AChangedByteIsRefusedOrWithoutConsequence) {
         continue;
       }
       const std::string going_on = user_error_of([&] {
-        test::write_store(file_, made_plan(machines), test::plain_row);
+        test::write_store(file_, made_plan(damaged_machines), test::plain_row);
         found = figures_of(file_);
       });
       EXPECT_TRUE(going_on != "no UserError" || found == expected) << "byte " << i << " ^ " << flipped;
@@ -185,7 +186,7 @@ TEST_F(DamagedStore, WhatAUserAddsIsNone) {
         "ANALYZE; VACUUM");
   }
   EXPECT_EQ(figures_of(file_), expected);
-  EXPECT_NO_THROW(SweepStore(file_, made_plan(machines)));
+  EXPECT_NO_THROW(SweepStore(file_, made_plan(damaged_machines)));
 }
 
 // The lock is written and removed; a file that may not be a lock is left alone.
@@ -194,7 +195,7 @@ TEST_F(DamagedStore, ALockIsNoLinkAndNothingElse) {
   const fs::path precious = directory_.path() / "precious";
   sim::write_file(precious, "process of making it");
   const auto refused = [&](const std::string& why) {
-    const std::string message = user_error_of([&] { SweepStore(file_, made_plan(machines)); });
+    const std::string message = user_error_of([&] { SweepStore(file_, made_plan(damaged_machines)); });
     EXPECT_TRUE(message.starts_with(lock.string())) << message;
     EXPECT_NE(message.find(why + "; remove it"), std::string::npos) << message;
     EXPECT_TRUE(fs::exists(fs::symlink_status(lock)));
@@ -213,7 +214,7 @@ TEST_F(DamagedStore, ALockIsNoLinkAndNothingElse) {
   sim::write_file(lock, "notes of mine");
   refused("a file of something else");
   sim::write_file(lock, "process 1 on a computer that has failed\n");
-  EXPECT_NO_THROW(SweepStore(file_, made_plan(machines)));
+  EXPECT_NO_THROW(SweepStore(file_, made_plan(damaged_machines)));
 }
 
 }  // namespace

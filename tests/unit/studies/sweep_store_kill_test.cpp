@@ -42,10 +42,10 @@ namespace fs = std::filesystem;
 using test::TemporaryDirectory;
 using test::user_error_of;
 
-constexpr std::size_t machines = 2;
+constexpr std::size_t killed_machines = 2;
 
 SweepPlan plan() {
-  SweepPlan plan = test::made_plan(machines);
+  SweepPlan plan = test::made_plan(killed_machines);
   plan.axes[3] = "bus.kind";  // a name that a table can have
   return plan;
 }
@@ -126,7 +126,7 @@ void finish(const fs::path& file) {
       store.add_frame(frame, test::made_frame_row(frame), 1);
     }
   }
-  for (std::size_t machine = 0; machine < machines; ++machine) {
+  for (std::size_t machine = 0; machine < killed_machines; ++machine) {
     if (!done[machine]) {
       store.add_result(machine, test::plain_row(machine), 1);
       count('r');
@@ -156,7 +156,7 @@ Child run_until(std::size_t last, const std::function<void()>& what) {
     } catch (const std::exception&) {
       _exit(2);
     }
-    [[maybe_unused]] const ssize_t told = write(ends[1], calls.data(), calls.size());
+    [[maybe_unused]] const ssize_t told = ::write(ends[1], calls.data(), calls.size());
     _exit(0);
   }
   close(ends[1]);
@@ -286,7 +286,7 @@ TEST_F(HotJournal, IsTakenInByReaders) {
   fs::remove(directory_.path() / "whole.sqlite");
   std::size_t done = 0;
   EXPECT_EQ(shown(file_, done), before_);
-  EXPECT_EQ(done, machines);
+  EXPECT_EQ(done, killed_machines);
   EXPECT_FALSE(fs::exists(file_.string() + "-journal"));
 }
 

@@ -18,7 +18,7 @@ using test::user_error_of;
 
 SweepTable table_of(std::string_view text) { return read_sweep_table(sweep_config(text)); }
 
-std::string error_of(std::string_view text) {
+std::string table_error_of(std::string_view text) {
   return user_error_of([&] { (void)table_of(text); });
 }
 
@@ -129,7 +129,7 @@ TEST(SweepTable, WrongInputIsNamedWithFileLineAndKey) {
       {"[sweep.axes]\nmachine.nodes = \"1..2000\"\nhost.latency_cycles = \"1..2000\"\n",
        "s.toml:3: sweep: the axes up to this line make 4000000 points; a sweep has at most 1000000"},
   };
-  test::expect_messages(wrong, error_of);
+  test::expect_messages(wrong, table_error_of);
   EXPECT_EQ(user_error_of([] {
               (void)read_sweep_table(sweep_config("[sweep.axes]\ncache.ways = [1]\n", {"cache.ways=2"}));
             }),
