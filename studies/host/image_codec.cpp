@@ -87,18 +87,19 @@ OIIO::ImageSpec spec_of(scenes::ImageSize size, std::size_t channels, const OIIO
                          static_cast<int>(channels), type);
 }
 
-void write(const std::string& file, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
-           const void* pixels) {
+// The bytes of an image file; the extension of `name` says of which format.
+std::string encode(const std::string& name, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
+                   const void* pixels) {
   // OpenEXR compresses in this thread: a pool of its own would be more threads than the system may give.
   static const bool no_pool = OIIO::attribute("exr_threads", -1);
   static_cast<void>(no_pool);
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(file);
-  if (!out) {
-    throw sim::UserError(file + ": " + OIIO::geterror());
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(name, &memory);
+  if (!out || !out->open(name, spec) || !out->write_image(type, pixels) || !out->close()) {
+    throw sim::UserError("an image cannot be encoded: " + (out ? out->geterror() : OIIO::geterror()));
   }
-  if (!out->open(file, spec) || !out->write_image(type, pixels) || !out->close()) {
-    throw sim::UserError(file + ": cannot be written: " + out->geterror());
-  }
+  return {bytes.begin(), bytes.end()};
 }
 
 // The size of an image that can be a texture, or the result of a run.
@@ -133,14 +134,14 @@ struct OpenImage {
 
 class OpenImageIO final : public ImageCodec {
  public:
-  void write_exr(const std::string& file, scenes::ImageSize size, std::span<const std::string> channels,
-                 std::span<const float> samples) const override {
+  [[nodiscard]] std::string encode_exr(scenes::ImageSize size, std::span<const std::string> channels,
+                                       std::span<const float> samples) const override {
     OIIO::ImageSpec spec = spec_of(size, channels.size(), OIIO::TypeDesc::FLOAT);
     spec.channelnames.assign(channels.begin(), channels.end());
     spec.attribute("compression", "zip");
     // Without a date the library writes that of today, and equal images would be different files.
     spec.attribute("DateTime", "1970:01:01 00:00:00");
-    write(file, spec, OIIO::TypeDesc::FLOAT, samples.data());
+    return encode("image.exr", spec, OIIO::TypeDesc::FLOAT, samples.data());
   }
 
   [[nodiscard]] std::vector<float> read_exr(const std::string& file, scenes::ImageSize& size) const override {
@@ -156,11 +157,13 @@ class OpenImageIO final : public ImageCodec {
     return samples;
   }
 
-  void write_png(const std::string& file, scenes::ImageSize size,
-                 std::span<const std::uint8_t> samples) const override {
-    OIIO::ImageSpec spec = spec_of(size, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    write(file, spec, OIIO::TypeDesc::UINT8, samples.data());
+  [[nodiscard]] std::string encode_png(scenes::ImageSize size, std::size_t channels,
+                                       std::span<const std::uint8_t> samples) const override {
+    OIIO::ImageSpec spec = spec_of(size, channels, OIIO::TypeDesc::UINT8);
+    if (channels == 3) {  // of a texture, its file or material says what its bytes mean
+      spec.attribute("oiio:ColorSpace", "sRGB");
+    }
+    return encode("image.png", spec, OIIO::TypeDesc::UINT8, samples.data());
   }
 
   [[nodiscard]] DecodedImage decode(std::span<const std::byte> file, std::string_view name) const override {
@@ -177,20 +180,6 @@ class OpenImageIO final : public ImageCodec {
   [[nodiscard]] scenes::ImageSize size_of(std::span<const std::byte> file,
                                           std::string_view name) const override {
     return OpenImage(file, name).size;
-  }
-
-  [[nodiscard]] std::vector<std::byte> encode_png(const scenes::Texture& texture) const override {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("texture.png", &memory);
-    const OIIO::ImageSpec spec = spec_of({texture.width, texture.height}, 4, OIIO::TypeDesc::UINT8);
-    if (!out || !out->open("texture.png", spec) ||
-        !out->write_image(OIIO::TypeDesc::UINT8, texture.texels.data()) || !out->close()) {
-      throw sim::UserError("the texture " + texture.name + " cannot be encoded as PNG");
-    }
-    std::vector<std::byte> result(bytes.size());
-    std::ranges::transform(bytes, result.begin(), [](unsigned char b) { return std::byte{b}; });
-    return result;
   }
 };
 

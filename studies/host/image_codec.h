@@ -21,7 +21,8 @@ struct DecodedImage {
   std::vector<std::uint8_t> samples;
 };
 
-/// Every function throws UserError with a complete message when the file cannot be read or written.
+/// Every function throws UserError with a complete message when the image cannot be read or encoded. None
+/// writes a file: who does says why that failed, and under which name.
 class ImageCodec {
  public:
   ImageCodec() = default;
@@ -29,17 +30,17 @@ class ImageCodec {
   ImageCodec(const ImageCodec&) = delete;
   ImageCodec& operator=(const ImageCodec&) = delete;
 
-  /// An OpenEXR file of 32-bit floats, one for each channel of each pixel.
-  virtual void write_exr(const std::string& file, scenes::ImageSize size,
-                         std::span<const std::string> channels, std::span<const float> samples) const = 0;
+  /// The bytes of an OpenEXR file of 32-bit floats, one for each channel of each pixel.
+  [[nodiscard]] virtual std::string encode_exr(scenes::ImageSize size, std::span<const std::string> channels,
+                                               std::span<const float> samples) const = 0;
 
-  /// The red, green and blue floats of each pixel of a file that write_exr() has written.
+  /// The red, green and blue floats of each pixel of a file that encode_exr() has made.
   [[nodiscard]] virtual std::vector<float> read_exr(const std::string& file,
                                                     scenes::ImageSize& size) const = 0;
 
-  /// A PNG file of sRGB-encoded bytes: red, green, blue of each pixel.
-  virtual void write_png(const std::string& file, scenes::ImageSize size,
-                         std::span<const std::uint8_t> samples) const = 0;
+  /// The bytes of a PNG file of 8-bit samples, so many a pixel: 3 are red, green and blue, 4 also alpha.
+  [[nodiscard]] virtual std::string encode_png(scenes::ImageSize size, std::size_t channels,
+                                               std::span<const std::uint8_t> samples) const = 0;
 
   /// A PNG, JPEG or WebP file in memory; `name` is for messages.
   [[nodiscard]] virtual DecodedImage decode(std::span<const std::byte> file, std::string_view name) const = 0;
@@ -47,9 +48,6 @@ class ImageCodec {
   /// The size of such a file in memory, from its head alone.
   [[nodiscard]] virtual scenes::ImageSize size_of(std::span<const std::byte> file,
                                                   std::string_view name) const = 0;
-
-  /// The texels as a PNG file in memory.
-  [[nodiscard]] virtual std::vector<std::byte> encode_png(const scenes::Texture& texture) const = 0;
 };
 
 }  // namespace marti::studies::host

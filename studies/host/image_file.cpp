@@ -129,12 +129,12 @@ std::string note_of_infinities(const processors::program::Image& image) {
                           "than 32-bit floats can hold; image.png has them white or black.";
 }
 
-void write_exr(const processors::program::Image& image, const std::filesystem::path& file) {
+std::string exr_file(const processors::program::Image& image) {
   const std::array<std::string, 3> names = {"R", "G", "B"};
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
   const std::span samples(reinterpret_cast<const float*>(image.pixels.data()),
                           image.pixels.size() * names.size());
-  codec().write_exr(file.string(), {image.width, image.height}, names, samples);
+  return codec().encode_exr({image.width, image.height}, names, samples);
 }
 
 processors::program::Image read_exr(const std::filesystem::path& file) {
@@ -148,8 +148,8 @@ processors::program::Image read_exr(const std::filesystem::path& file) {
   return image;
 }
 
-void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
-                    std::span<const std::vector<float>> channels, const std::filesystem::path& file) {
+std::string exr_file(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
+                     std::span<const std::vector<float>> channels) {
   std::vector<float> samples;
   samples.reserve(std::size_t{width} * height * channels.size());
   for (std::size_t pixel = 0; pixel < std::size_t{width} * height; ++pixel) {
@@ -157,10 +157,10 @@ void write_channels(std::uint32_t width, std::uint32_t height, std::span<const s
       samples.push_back(channel[pixel]);
     }
   }
-  codec().write_exr(file.string(), {width, height}, names, samples);
+  return codec().encode_exr({width, height}, names, samples);
 }
 
-void write_png(const processors::program::Image& image, const std::filesystem::path& file) {
+std::string png_file(const processors::program::Image& image) {
   std::vector<std::uint8_t> samples;
   samples.reserve(image.pixels.size() * 3);
   for (const glm::vec3& pixel : image.pixels) {
@@ -168,7 +168,7 @@ void write_png(const processors::program::Image& image, const std::filesystem::p
       samples.push_back(srgb_byte(pixel[channel]));
     }
   }
-  codec().write_png(file.string(), {image.width, image.height}, samples);
+  return codec().encode_png({image.width, image.height}, 3, samples);
 }
 
 scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name) {
@@ -181,6 +181,12 @@ scenes::ImageSize size_of_image(std::span<const std::byte> file, std::string_vie
   return codec().size_of(file, name);
 }
 
-std::vector<std::byte> encode_png(const scenes::Texture& texture) { return codec().encode_png(texture); }
+std::vector<std::byte> encode_png(const scenes::Texture& texture) {
+  const std::span samples(reinterpret_cast<const std::uint8_t*>(texture.texels.data()),
+                          4 * texture.texels.size());
+  const std::string file = codec().encode_png({texture.width, texture.height}, 4, samples);
+  const auto* const bytes = reinterpret_cast<const std::byte*>(file.data());
+  return {bytes, bytes + file.size()};
+}
 
 }  // namespace marti::studies::host

@@ -22,24 +22,24 @@ void begin_to_load_image_library();
 /// be loaded. Throws UserError.
 void load_image_library();
 
-/// Writes 32-bit float linear RGB as OpenEXR, without a date that means anything: equal images are equal
-/// files. Throws UserError when the file cannot be written.
-void write_exr(const processors::program::Image& image, const std::filesystem::path& file);
+/// The bytes of an OpenEXR file of 32-bit float linear RGB, without a date that means anything: equal images
+/// are equal files.
+[[nodiscard]] std::string exr_file(const processors::program::Image& image);
 
-/// Reads what write_exr() has written. Throws UserError for a file that is not such an image.
+/// Reads a file that exr_file() has made. Throws UserError for a file that is not such an image.
 [[nodiscard]] processors::program::Image read_exr(const std::filesystem::path& file);
 
 /// "3 of 256 pixels ...": how many have a channel that is infinite or NaN, which an EXR file holds unchanged
 /// and a PNG file as its brightest or darkest value; empty when no pixel has one.
 [[nodiscard]] std::string note_of_infinities(const processors::program::Image& image);
 
-/// Writes an OpenEXR of 32-bit float channels, each with a name and width * height figures.
-void write_channels(std::uint32_t width, std::uint32_t height, std::span<const std::string> names,
-                    std::span<const std::vector<float>> channels, const std::filesystem::path& file);
+/// Such a file of other channels, each with a name and width * height figures.
+[[nodiscard]] std::string exr_file(std::uint32_t width, std::uint32_t height,
+                                   std::span<const std::string> names,
+                                   std::span<const std::vector<float>> channels);
 
-/// Writes 8-bit sRGB-encoded PNG; values are clamped to 0..1. Throws UserError when the file cannot be
-/// written.
-void write_png(const processors::program::Image& image, const std::filesystem::path& file);
+/// The bytes of a PNG file of 8 bits a channel, sRGB-encoded; values are clamped to 0..1.
+[[nodiscard]] std::string png_file(const processors::program::Image& image);
 
 /// A scenes::ImageDecoder. Reads PNG and JPEG; refuses more than 65,536 pixels a side or 2^28 in all.
 [[nodiscard]] scenes::Texture decode_image(std::span<const std::byte> file, std::string_view name);

@@ -30,8 +30,8 @@ constexpr const char* timeline_name = "timeline.json";
 
 void add_image(const processors::program::Image& image, const std::string& name,
                tables::PendingFiles& files) {
-  host::write_exr(image, files.add(name + ".exr"));
-  host::write_png(image, files.add(name + ".png"));
+  files.write(name + ".exr", host::exr_file(image));
+  files.write(name + ".png", host::png_file(image));
 }
 
 void add_files(const run::RunResult& result, tables::PendingFiles& files) {

@@ -33,8 +33,8 @@ std::vector<fs::path> write_study(const StudyOutput& output, const fs::path& dir
     files.write(std::string(chart->name) + ".vl.json", fill_chart(*chart, *table));
   }
   for (const StudyImage& image : output.images) {
-    host::write_exr(image.image, files.add(image.name + ".exr"));
-    host::write_png(image.image, files.add(image.name + ".png"));
+    files.write(image.name + ".exr", host::exr_file(image.image));
+    files.write(image.name + ".png", host::png_file(image.image));
   }
   files.write("report.txt", output.report);
   if (!output.host_report.empty()) {

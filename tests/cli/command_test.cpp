@@ -121,6 +121,7 @@ TEST(Command, UnwritablePlacesAreTheUsersAffair) {
             " --set image.width=200 --set image.height=200 --set scene.source=teapot:2 -o " +
             quoted(directory.path() / "full"));
   EXPECT_EQ(full.status, 2) << full.output;
+  EXPECT_TRUE(says(full, "full/image.exr: cannot be written: File too large")) << full.output;
   EXPECT_FALSE(fs::exists(directory.path() / "full")) << "nothing may be left behind";
   const Outcome closed = shell(quoted(MARTI_PROGRAM) + " config > /dev/full");
   EXPECT_EQ(closed.status, 2) << closed.output;

@@ -14,10 +14,10 @@ void add_heat_files(const HeatMap& map, tables::PendingFiles& files) {
   }
   const std::array<std::string, heats> names = {std::string(heat_names[0]), std::string(heat_names[1]),
                                                 std::string(heat_names[2])};
-  host::write_channels(map.width(), map.height(), names, channels, files.add("heat.exr"));
+  files.write("heat.exr", host::exr_file(map.width(), map.height(), names, channels));
   for (std::size_t i = 0; i < heats; ++i) {
-    host::write_png(false_colour(channels[i], map.width(), map.height(), legend_of(channels[i])),
-                    files.add("heat-" + names[i] + ".png"));
+    files.write("heat-" + names[i] + ".png",
+                host::png_file(false_colour(channels[i], map.width(), map.height(), legend_of(channels[i]))));
   }
 }
 
