@@ -32,7 +32,7 @@ TEST(ProgressOnATerminal, ARunSaysWhatItDoesAndOnlyThere) {
   OnTerminal study({"study", "paper", configs + "paper.toml", "-o", directory.path() / "results"},
                    directory.path() / "study");
   OnTerminal run(long_run, directory.path() / "run");
-  ASSERT_TRUE(run.wait_for(" of "));
+  ASSERT_TRUE(run.wait_for("] ")) << "on a busy computer, what is done before it is told, too";
   EXPECT_TRUE(run.screen().starts_with("[")) << run.screen();
   EXPECT_EQ(run.end_by(SIGINT), -SIGINT);
   EXPECT_EQ(run.screen(), "") << "the line is taken away";
