@@ -25,9 +25,15 @@ class Ranks {
     const TopologyNode& node = topology_.nodes[branch];
     std::uint32_t count = 0;
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      count += has_record(child) && ranks_[child] == no_record ? 1 : 0;
+      count += has_record(child) && !topology_.nodes[child].instance && ranks_[child] == no_record ? 1 : 0;
     }
     return count;
+  }
+  /// The root of a mesh is below all of its instances, and has one record.
+  void place(std::uint32_t node) {
+    if (has_record(node) && ranks_[node] == no_record) {
+      ranks_[node] = topology_.nodes[node].instance ? next_transform_++ : next_++;
+    }
   }
   void place_children(std::uint32_t branch) {
     const TopologyNode& node = topology_.nodes[branch];
@@ -50,7 +56,7 @@ class Ranks {
     return ranks_.empty() || topology_.nodes[0].leaf ? std::vector<std::uint32_t>{}
                                                      : std::vector<std::uint32_t>{0};
   }
-  /// How many records have been placed.
+  /// How many node records have been placed.
   [[nodiscard]] std::uint32_t placed() const { return next_; }
   [[nodiscard]] std::vector<std::uint32_t> take() { return std::move(ranks_); }
 
@@ -58,18 +64,13 @@ class Ranks {
   [[nodiscard]] bool has_record(std::uint32_t node) const {
     return leaf_records_ || !topology_.nodes[node].leaf;
   }
-  // The root of a mesh is below all of its instances, and has one record.
-  void place(std::uint32_t node) {
-    if (has_record(node) && ranks_[node] == no_record) {
-      ranks_[node] = next_++;
-    }
-  }
 
   const Topology& topology_;
   bool leaf_records_;
   std::vector<std::uint32_t> ranks_;
   std::vector<bool> appended_;
   std::uint32_t next_ = 0;
+  std::uint32_t next_transform_ = 0;
 };
 
 }  // namespace
@@ -77,9 +78,7 @@ class Ranks {
 std::vector<std::uint32_t> breadth_first_rank(const Topology& topology, bool leaf_records) {
   Ranks ranks(topology, leaf_records);
   for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
-    if (!topology.nodes[node].leaf) {
-      ranks.place_children(node);
-    }
+    ranks.place(node);
   }
   return ranks.take();
 }
@@ -125,10 +124,10 @@ Treelets treelets_of(const Topology& topology, bool leaf_records, std::uint32_t 
   }
   treelets.begin.push_back(ranks.placed());
   treelets.rank = ranks.take();
-  // Of a node without a record that of its parent, which comes before it.
+  // Of a leaf without a record, and of an instance, that of its parent, which comes before it.
   treelets.of_node.resize(topology.nodes.size());
   for (std::uint32_t node = 0; node < topology.nodes.size(); ++node) {
-    if (const std::uint32_t rank = treelets.rank[node]; rank != no_record) {
+    if (const std::uint32_t rank = treelets.rank[node]; rank != no_record && !topology.nodes[node].instance) {
       const auto next = std::upper_bound(treelets.begin.begin(), treelets.begin.end(), rank);
       treelets.of_node[node] = static_cast<std::uint32_t>(next - treelets.begin.begin()) - 1;
     }

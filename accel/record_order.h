@@ -9,7 +9,8 @@
 
 namespace marti::accel {
 
-/// The rank of a node that has no record.
+/// The rank of a node that has no record. An instance's rank is that of its transform among transforms, which
+/// lie in the order in which node records of instances would.
 inline constexpr std::uint32_t no_record = 0xffffffffU;
 
 /// Breadth-first, as nodes are numbered. `leaf_records`: whether leaves have records.
@@ -21,7 +22,7 @@ inline constexpr std::uint32_t no_record = 0xffffffffU;
 struct Treelets {
   std::vector<std::uint32_t> rank;     ///< the place of each node's record, or no_record
   std::vector<std::uint32_t> begin;    ///< the first rank of each treelet, plus the end; they are in a row
-  std::vector<std::uint32_t> of_node;  ///< the treelet of each node's record, or else of its parent's
+  std::vector<std::uint32_t> of_node;  ///< the treelet of each node's record; of others that of their parent
 };
 
 /// Cuts the tree into treelets of at most `most` records. A treelet is filled breadth-first from its first

@@ -2,6 +2,7 @@
 // leaf n" into addresses.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct TopologyNode {
   std::uint32_t count = 0;  ///< branch: number of children; leaf: number of entries
   std::uint8_t level = 1;   ///< the root is level 1
   bool leaf = true;
+  bool instance = false;  ///< a branch whose record is the transform to its one child, the root of a mesh
 
   bool operator==(const TopologyNode&) const = default;
 };
@@ -37,13 +39,9 @@ struct Topology {
   bool operator==(const Topology&) const = default;
 };
 
-/// Whether instances are kept: then some nodes are below several branches.
+/// Whether instances are kept: then some nodes may be below several branches.
 [[nodiscard]] inline bool has_instances(const Topology& topology) {
-  std::size_t below = 1;
-  for (const TopologyNode& node : topology.nodes) {
-    below += node.leaf ? 0 : node.count;
-  }
-  return below > topology.nodes.size();
+  return std::ranges::any_of(topology.nodes, &TopologyNode::instance);
 }
 
 /// Bytes of host memory that the topology takes.

@@ -129,7 +129,7 @@ void TwoLevelBvh::join_trees() {
     if (const TopologyNode& node = top.nodes[n]; node.leaf) {
       const std::uint32_t instance = top.entries[node.first];
       instance_of_[n] = instance;
-      topology_.nodes[n] = {meshes_[instances_[instance].mesh()].root(), 1, node.level, false};
+      topology_.nodes[n] = {meshes_[instances_[instance].mesh()].root(), 1, node.level, false, true};
     }
   }
 }

@@ -2,10 +2,10 @@
 // the boxes of all instances, as the acceleration structures of today's units (Vulkan 1.3, chapter
 // "Acceleration Structures": top-level and bottom-level).
 //
-// In the topology, an instance is a branch with one child, the root of its mesh; its record is the transform.
-// Instances of one mesh share that child, so that the topology is no tree below instances. The nodes of the
-// top level come first, then those of mesh after mesh. The roots of all meshes are one level below the
-// deepest instance.
+// In the topology, an instance is a branch with one child, the root of its mesh, and marked as an instance;
+// its record is the transform. Instances of one mesh share that child, so that the topology is no tree below
+// instances. The nodes of the top level come first, then those of mesh after mesh. The roots of all meshes
+// are one level below the deepest instance.
 //
 // Why no hit is missed. In a mesh's coordinates the reasons of bvh_walk.h hold; its rays often begin many
 // sizes of the mesh away, and its frame is made for a reach of 2^14 diagonals. Of the top level, boxes are
@@ -91,7 +91,7 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   template <bool Any, class Real, class Visitor>
   bool enter(std::uint32_t number, const Ray& ray, Best<Real>& best, Visitor& visitor) const {
     const Instance& instance = instances_[instance_of_[number]];
-    visitor.branch(number);
+    visitor.transform(number);
     if constexpr (SeesEntered<Visitor>) {
       EnteredChildren root;
       root.add(0);

@@ -43,6 +43,9 @@ concept SeesEntered = requires(Visitor& visitor, EnteredChildren children) {
 struct NullVisitor {
   /// A branch node's record was read and its children are about to be entered.
   void branch(std::uint32_t /*node*/) {}
+  /// An instance's transform was read and the ray is about to be brought into its mesh's coordinates; what
+  /// follows is in the mesh, up to the next visit to a node of the top level.
+  void transform(std::uint32_t /*node*/) {}
   /// A leaf's record was read, then the first `tests` of its `entries` objects were tested, in list
   /// order. tests < entries only when an occlusion query ended early.
   void leaf(std::uint32_t /*node*/, std::uint32_t /*tests*/, std::uint32_t /*entries*/) {}

@@ -22,9 +22,9 @@ std::string key_of(std::string_view name) {
 }  // namespace
 
 Layout::Layout(const LayoutConfig& config, const RecordCounts& counts, std::uint64_t quadrics) {
-  const std::array<std::uint32_t, record_kinds> bytes = {config.node_bytes,      config.entry_bytes,
-                                                         config.primitive_bytes, config.material_bytes,
-                                                         config.texel_bytes,     config.pixel_bytes};
+  const std::array<std::uint32_t, record_kinds> bytes = {
+      config.node_bytes,     config.transform_bytes, config.entry_bytes, config.primitive_bytes,
+      config.material_bytes, config.texel_bytes,     config.pixel_bytes};
   if (!std::has_single_bit(config.record_alignment) || !std::has_single_bit(config.section_alignment)) {
     throw sim::KeyError(
         std::has_single_bit(config.record_alignment) ? "layout.section_alignment" : "layout.record_alignment",

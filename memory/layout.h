@@ -1,10 +1,10 @@
 // The database layout: the address of each record, computed from record sizes and an alignment.
 //
-// The sections follow one another from address 0: nodes, object lists, primitives, materials, texels, frame
-// buffer. Records of a section are a stride apart: the record's size rounded up to the record alignment
-// (object lists, texels and pixels are packed arrays, so they are not padded). Primitives have two sizes:
-// first come all triangles, then the spheres, cylinders and cones (quadrics), whose numbers continue those of
-// the triangles.
+// The sections follow one another from address 0: nodes, transforms, object lists, primitives, materials,
+// texels, frame buffer. Records of a section are a stride apart: the record's size rounded up to the record
+// alignment (object lists, texels and pixels are packed arrays, so they are not padded). Primitives have two
+// sizes: first come all triangles, then the spheres, cylinders and cones (quadrics), whose numbers continue
+// those of the triangles.
 #pragma once
 
 #include <array>
@@ -28,8 +28,12 @@ inline constexpr std::array<std::string_view, 2> leaf_layout_names = {"list", "i
 
 /// Record sizes in bytes, each at least 1.
 struct LayoutConfig {
-  std::uint32_t node_bytes = 8;   ///< kind and count in one word, first child or first entry in the other
-  std::uint32_t entry_bytes = 4;  ///< one object reference of a leaf's list
+  std::uint32_t node_bytes = 8;  ///< kind and count in one word, first child or first entry in the other
+  /// one instance: three rows of four 4-byte numbers, where its mesh begins, which it is. Vulkan's record of
+  /// an instance (VkAccelerationStructureInstanceKHR) has 64 bytes, and so has what Intel's units read of one
+  /// on the way down (the first part of the instance leaf in Mesa's src/intel/vulkan/bvh/anv_bvh.h)
+  std::uint32_t transform_bytes = 64;
+  std::uint32_t entry_bytes = 4;       ///< one object reference of a leaf's list
   std::uint32_t primitive_bytes = 48;  ///< three vertices of three 4-byte coordinates, material, padding
   /// one sphere, cylinder or cone: two points of three 4-byte coordinates, two radii, kind, material
   std::uint32_t quadric_bytes = 40;

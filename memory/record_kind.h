@@ -10,9 +10,10 @@ namespace marti::memory {
 
 using Address = std::uint64_t;
 
-enum class RecordKind : std::uint8_t { node, list, primitive, material, texel, pixel };
-inline constexpr std::size_t record_kinds = 6;
+/// transform: an instance of a mesh.
+enum class RecordKind : std::uint8_t { node, transform, list, primitive, material, texel, pixel };
+inline constexpr std::size_t record_kinds = 7;
 inline constexpr std::array<std::string_view, record_kinds> record_kind_names = {
-    "node", "list", "primitive", "material", "texel", "pixel"};
+    "node", "transform", "list", "primitive", "material", "texel", "pixel"};
 
 }  // namespace marti::memory

@@ -22,6 +22,7 @@ ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
 
 std::array<std::int64_t, memory::record_kinds> records_of(const StepCounts& steps, bool leaf_records) {
   return {steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts,
+          steps.transforms,
           steps.lists,
           steps.tests,
           steps.shades + steps.passes + steps.any_hits,

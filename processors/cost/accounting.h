@@ -17,7 +17,7 @@
 namespace marti::processors::cost {
 
 enum class Activity : std::uint8_t {
-  traversal,     ///< setting up rays, visiting branches and leaves
+  traversal,     ///< setting up rays, visiting branches, instances and leaves
   intersection,  ///< testing primitives
   shading,       ///< hit points, lights, textures, holes of triangles, finished pixels
   building,      ///< subdividing nodes during the frame
@@ -78,6 +78,7 @@ struct StepCounts {
   std::int64_t refraction_rays = 0;
   std::int64_t diffuse_rays = 0;
   std::int64_t branches = 0;
+  std::int64_t transforms = 0;
   std::int64_t leaves = 0;
   std::int64_t lists = 0;         ///< leaves whose object list was read
   std::int64_t tests = 0;         ///< of all kinds of primitive
@@ -106,6 +107,8 @@ struct StepCounts {
         C{"diffuse_rays", "1", "scattered rays set up", &StepCounts::diffuse_rays, sim::MergeRule::sum,
           sim::Better::neither},
         C{"branches", "1", "branch nodes visited", &StepCounts::branches},
+        C{"transforms", "1", "instances visited: rays brought into a mesh's coordinates",
+          &StepCounts::transforms},
         C{"leaves", "1", "leaf nodes visited, empty ones included", &StepCounts::leaves},
         C{"lists", "1", "object lists read", &StepCounts::lists},
         C{"tests", "1", "primitives tested", &StepCounts::tests},

@@ -129,6 +129,7 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
   }
   steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
+  steps.transform = price(mixes.transform, cycles, read_record(cycles, words.transform));
   steps.leaf = price(mixes.leaf, cycles, accel::walks_bvh(traversal) ? 0 : read_record(cycles, words.node));
   const std::int64_t entry = read_record(cycles, words.entry);
   const std::int64_t primitive = read_record(cycles, words.primitive);

@@ -26,13 +26,15 @@ struct RecordWords {
   std::int64_t material = 16;
   std::int64_t texel = 1;
   std::int64_t pixel = 1;
+  std::int64_t transform = 16;
 };
 
 /// Whole compute cycles of each kind of step.
 struct StepCycles {
   std::array<std::int64_t, program::ray_kinds> ray{};  ///< setting up a ray of each RayKind and its traversal
   std::int64_t branch = 0;                             ///< reading a branch and ordering its children
-  std::int64_t leaf = 0;                               ///< reading a leaf, without its tests
+  std::int64_t transform = 0;  ///< reading an instance's transform and bringing the ray into its mesh
+  std::int64_t leaf = 0;       ///< reading a leaf, without its tests
   std::int64_t lookup = 0;  ///< with mailboxes, one entry of a leaf's list: fetch its id, look at its mailbox
   std::int64_t test = 0;    ///< one test: fetch the triangle, and its id unless it was looked up, test it,
                             ///< and with mailboxes leave the ray's number in the mailbox

@@ -39,6 +39,7 @@ struct OperationMix {
 ///   branch  octree, recursive BSP tree, bounding volume hierarchy: everything done between one node visit
 ///           and the next: ordering children, clipping or testing boxes, popping. Pushed points: choosing a
 ///           branch's half on the way from the root. Grid: nothing, its header is read once
+///   transform   bringing the ray into a mesh's coordinates, and setting up kernel and traversal there
 ///   leaf    octree, recursive BSP tree: nothing but reading it; its record's fetch is priced from the
 ///           layout. Bounding volume hierarchy: nothing, it has no record. Pushed points: finding the face by
 ///           which the leaf is left, and the point beyond it. Grid: the step to the next cell
@@ -57,6 +58,7 @@ struct OperationMix {
 struct OperationMixes {
   std::array<OperationMix, program::ray_kinds> ray{};
   OperationMix branch;
+  OperationMix transform;
   OperationMix leaf;
   OperationMix lookup;
   OperationMix test;
@@ -76,8 +78,8 @@ struct OperationMixes {
 /// max_level 12), a grid (density 4) or a bounding volume hierarchy (at most 3 in a leaf), 128 x 128, depth
 /// 2; brute force on teapot:4, 32 x 32; refraction on gears:2, which has glass; scattered rays, shading and
 /// lights of paths on teapot:12 under an emissive square; the tests of spheres, cylinders and cones on
-/// lattice:4 in the octree; the texel on a textured square. Sampling the texel and converting the pixel are
-/// counted by hand (operation_mix.cpp says how).
+/// lattice:4 in the octree; the texel on a textured square; the transform on instances of a teapot. Sampling
+/// the texel and converting the pixel are counted by hand (operation_mix.cpp says how).
 [[nodiscard]] const OperationMixes& operation_mixes(accel::Traversal traversal);
 
 /// The result of a measurement: the means, and how many steps they are means of.

@@ -9,7 +9,7 @@ RecordWords record_words(const machine::MachineConfig& config) {
   const memory::LayoutConfig& layout = config.layout;
   return {words(layout.node_bytes),    words(layout.entry_bytes),    words(layout.primitive_bytes),
           words(layout.quadric_bytes), words(layout.material_bytes), words(layout.texel_bytes),
-          words(layout.pixel_bytes)};
+          words(layout.pixel_bytes),   words(layout.transform_bytes)};
 }
 
 StepTicks step_ticks(const machine::MachineConfig& config, const program::WorkLog& log) {
@@ -20,6 +20,7 @@ StepTicks step_ticks(const machine::MachineConfig& config, const program::WorkLo
     ticks.ray[kind] = config.clock.cycles(cycles.ray[kind]);
   }
   ticks.branch = config.clock.cycles(cycles.branch);
+  ticks.transform = config.clock.cycles(cycles.transform);
   ticks.leaf = config.clock.cycles(cycles.leaf);
   ticks.lookup = config.clock.cycles(cycles.lookup);
   ticks.test = config.clock.cycles(cycles.test);

@@ -11,6 +11,7 @@ namespace marti::processors::cost {
 struct StepTicks {
   std::array<sim::Ticks, program::ray_kinds> ray{};
   sim::Ticks branch = 0;
+  sim::Ticks transform = 0;
   sim::Ticks leaf = 0;
   sim::Ticks lookup = 0;  ///< looking up the mailbox of one entry; 0 without mailboxes
   sim::Ticks test = 0;
@@ -41,6 +42,7 @@ void for_each_step(const Costs& costs, const StepCounts& steps, Visit&& visit) {
     visit(Activity::traversal, costs.ray[kind], steps.*ray_counters[kind]);
   }
   visit(Activity::traversal, costs.branch, steps.branches);
+  visit(Activity::traversal, costs.transform, steps.transforms);
   visit(Activity::traversal, costs.leaf, steps.leaves);
   visit(Activity::traversal, costs.cut, steps.cuts);
   visit(Activity::traversal, costs.pass, steps.passes);

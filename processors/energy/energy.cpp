@@ -72,9 +72,9 @@ DividedSteps divided(const machine::MachineConfig& config, const cost::StepCount
   DividedSteps of{steps, {}};
   if (config.has_rt_unit()) {
     for (const auto member :
-         {&cost::StepCounts::branches, &cost::StepCounts::leaves, &cost::StepCounts::tests,
-          &cost::StepCounts::sphere_tests, &cost::StepCounts::cone_tests, &cost::StepCounts::cuts,
-          &cost::StepCounts::passes}) {
+         {&cost::StepCounts::branches, &cost::StepCounts::transforms, &cost::StepCounts::leaves,
+          &cost::StepCounts::tests, &cost::StepCounts::sphere_tests, &cost::StepCounts::cone_tests,
+          &cost::StepCounts::cuts, &cost::StepCounts::passes}) {
       std::swap(of.core.*member, of.unit.*member);
     }
   }
@@ -99,7 +99,7 @@ std::int64_t of_tests(const machine::MachineConfig& config, const EnergyUnits& u
   add_steps(config, units.unit_operations, counts, steps, sum);
   const std::int64_t leaves = accel::walks_bvh(counts.traversal) ? 0 : steps.leaves;
   sum.add(units.unit_rays.read + units.unit_rays.write,
-          steps.branches + leaves + steps.tests + steps.cuts + steps.passes);
+          steps.branches + steps.transforms + leaves + steps.tests + steps.cuts + steps.passes);
   return sum.in_units_of(attojoules_a_femtojoule);
 }
 

@@ -71,10 +71,11 @@ struct RtUnitConfig {
   RtCoalesce coalesce = RtCoalesce::warp;
   RtShare share = RtShare::none;
   std::int64_t box_cycles = 8;
+  std::int64_t transform_cycles = 8;
   std::int64_t leaf_cycles = 4;
   std::int64_t triangle_cycles = 8;
   std::int64_t quadric_cycles = 16;
-  std::uint32_t box_units = 0;       ///< tests of boxes and leaves that may begin in a cycle; 0: any number
+  std::uint32_t box_units = 0;  ///< tests of boxes, transforms and leaves that may begin in a cycle; 0: any
   std::uint32_t triangle_units = 0;  ///< tests of primitives that may; 0: any number
   /// Entries of a lane's stack that are on chip, 0 to most_stack_entries; others are in memory. 0: any number
   /// is on chip.

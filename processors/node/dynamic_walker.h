@@ -251,10 +251,11 @@ class DynamicWalker {
   bool each_child_line(std::uint32_t copy, std::uint32_t branch, const Visit& visit) const {
     const accel::TopologyNode& node = topology_.nodes[branch];
     return walk::each_line_of(
-        node.count, node_bytes(), unit_shift_,
-        [&](std::uint32_t number) -> std::optional<memory::Address> {
+        node.count, unit_shift_,
+        [&](std::uint32_t number) -> std::optional<walk::RecordBytes> {
           const memory::Address address = addresses_.record(copy, node.first + number);
-          return address < local_base_ ? std::optional(address) : std::nullopt;
+          return address < local_base_ ? std::optional(walk::RecordBytes{address, node_bytes()})
+                                       : std::nullopt;
         },
         visit);
   }
@@ -568,6 +569,8 @@ class DynamicWalker {
         spend(cursor, ticks_.cut, 1);
         read_record(cursor, copy, operand, Todo::voxel);
         break;
+      case program::Step::transform:
+        throw sim::InternalError("an instance in a tree that is built during the frame");
       case program::Step::pass:
         ++steps.passes;
         spend(cursor, ticks_.pass, 1);

@@ -50,6 +50,8 @@ sim::Ticks LogLevels::traversal_of(std::uint32_t word) const {
       return ticks_.leaf;
     case program::Step::ray:
       return ticks_.ray[program::ray_number_of(program::operand_of(word))];
+    case program::Step::transform:
+      return ticks_.transform;
     case program::Step::cut:
       return ticks_.cut;
     case program::Step::pass:

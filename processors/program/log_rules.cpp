@@ -67,6 +67,8 @@ void check_tree(const WorkLog& log, Fault& fault) {
     const accel::TopologyNode& node = tree.nodes[n];
     const std::size_t end = std::size_t{node.first} + node.count;
     fault.add_if(end > (node.leaf ? tree.entries.size() : nodes), "a node that points outside the tree");
+    fault.add_if(node.instance && (node.leaf || node.count != 1 || !accel::walks_bvh(log.traversal)),
+                 "an instance that is not a node with one mesh below it");
     if (node.leaf || !fault.none()) {
       continue;
     }
@@ -74,10 +76,9 @@ void check_tree(const WorkLog& log, Fault& fault) {
     fault.add_if(node.first <= n, "a branch above its parent");
     for (std::size_t child = node.first; child < end && fault.none(); ++child) {
       // The root of a mesh is below all of its instances, one level below the deepest.
-      const bool instance = node.count == 1 && accel::walks_bvh(log.traversal);
-      fault.add_if(has_parent[child] && !instance, "a node with two parents");
+      fault.add_if(has_parent[child] && !node.instance, "a node with two parents");
       fault.add_if(
-          instance ? tree.nodes[child].level <= node.level : tree.nodes[child].level != node.level + 1,
+          node.instance ? tree.nodes[child].level <= node.level : tree.nodes[child].level != node.level + 1,
           "a node that is not on the level below its parent's");
       children += has_parent[child] ? 0 : 1;
       has_parent[child] = true;
@@ -129,7 +130,9 @@ class StepRules {
   }
 
  private:
-  static bool is_leaf(Step step) { return visits_node(step) && step != Step::branch && step != Step::cut; }
+  static bool is_leaf(Step step) {
+    return step == Step::leaf || step == Step::partial_leaf || step == Step::mailed_leaf;
+  }
   [[nodiscard]] bool averaged(std::uint32_t material) const {
     return material < log_.materials && material >= log_.materials - log_.voxels;
   }
@@ -152,12 +155,13 @@ class StepRules {
                        word[1] >= log_.texture_begin[operand + 1] - log_.texture_begin[operand],
                    "a texel that the database does not have");
     }
-    fault.add_if(step > Step::any_hit, "an unknown step");
+    fault.add_if(step > Step::transform, "an unknown step");
   }
 
   void check_visit(Step step, const accel::TopologyNode& node, const std::uint32_t* word,
                    Fault& fault) const {
-    fault.add_if(step == Step::cut ? node.count == 0 : node.leaf == (step == Step::branch),
+    fault.add_if(step == Step::cut ? node.count == 0 || node.instance
+                                   : node.leaf != is_leaf(step) || node.instance != (step == Step::transform),
                  "a step on a node of another kind");
     fault.add_if(step == Step::partial_leaf && word[1] >= node.count,
                  "a partial leaf that tests all its entries");
@@ -221,7 +225,7 @@ class OrderRules {
   void visit(Step step, std::uint32_t number, Fault& fault) {
     const accel::TopologyNode& node = log_.topology.nodes[number];
     fault.add_if(number != 0 && reached_[number] != ray_, "a visit before that to the branch above");
-    if (step == Step::branch && fault.none()) {
+    if ((step == Step::branch || step == Step::transform) && fault.none()) {
       std::fill_n(reached_.begin() + node.first, node.count, ray_);
     }
     if (log_.has_entered() && fault.none()) {

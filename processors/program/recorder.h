@@ -108,6 +108,7 @@ class RowRecorder : public accel::AnyHitListener {
   }
 
   void branch(std::uint32_t node) { put(make_word(Step::branch, node)); }
+  void transform(std::uint32_t node) { put(make_word(Step::transform, node)); }
   void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
     if (tests == entries) [[likely]] {
       put(make_word(Step::leaf, node));

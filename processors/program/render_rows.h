@@ -125,7 +125,7 @@ void render_with(const scenes::Scene& scene, const Structure& structure, const E
   } else if (mailboxes) {
     run(accel::Mailboxed<NullRecorder>());
   } else if (options.record) {
-    if constexpr (std::is_same_v<Structure, accel::Bvh>) {
+    if constexpr (std::is_same_v<Structure, accel::Bvh> || std::is_same_v<Structure, accel::TwoLevelBvh>) {
       if (options.entered) {
         run(EnteredRecorder());
         return;

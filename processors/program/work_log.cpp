@@ -129,6 +129,10 @@ LogTotals totals_of(const WorkLog& log, std::vector<std::uint64_t>* shades) {
           of_rays.visit(1);
           ++totals.cuts;
           break;
+        case Step::transform:
+          of_rays.visit(1);
+          ++totals.transforms;
+          break;
         case Step::pass:
           ++totals.passes;
           break;

@@ -81,6 +81,8 @@ enum class Step : std::uint32_t {
                 ///< The last word's other bits are 0. At least one was not.
   any_hit,  ///< operand: material. Whether a hit counts was found out: its coordinates were computed and the
             ///< material read; the texel that decides follows. Behind the leaf with the triangle.
+  transform,  ///< operand: node, an instance. Its transform was read and the ray brought into the coordinates
+              ///< of its mesh.
 };
 
 inline constexpr unsigned operand_bits = 28;
@@ -121,7 +123,7 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
 /// Whether a step reads a tree node, which is its operand.
 [[nodiscard]] constexpr bool visits_node(Step step) {
   return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
-         step == Step::mailed_leaf || step == Step::cut;
+         step == Step::mailed_leaf || step == Step::cut || step == Step::transform;
 }
 /// Number of words of an any_hit with its texel.
 inline constexpr std::size_t any_hit_words = 3;
@@ -151,7 +153,7 @@ struct RowWords {
 
 /// One image row: its steps, and what stands beside them where it is asked for (RenderOptions).
 struct LogRow : RowWords {
-  RowWords entered;  ///< of each visit to a branch an accel::EnteredChildren
+  RowWords entered;  ///< of each visit to a branch or an instance an accel::EnteredChildren
   RowWords rays;     ///< a word for each ray (ray_grid.h)
   RowWords meets;    ///< what each ray meets (accel/bvh_meets.h)
 
@@ -162,6 +164,7 @@ struct LogRow : RowWords {
 struct LogTotals {
   std::uint64_t rays[ray_kinds] = {};
   std::uint64_t branches = 0;
+  std::uint64_t transforms = 0;
   std::uint64_t leaves = 0;
   std::uint64_t tests = 0;
   std::uint64_t lookups = 0;  ///< of mailboxes; 0 without mailboxes
@@ -172,7 +175,7 @@ struct LogTotals {
   std::uint64_t cuts = 0;
   std::uint64_t passes = 0;
   std::uint64_t visits_95 = 0;    ///< the least number of visits that 95 % of the rays do not exceed
-  std::uint64_t most_visits = 0;  ///< of a ray: branches, leaves and nodes taken as one voxel
+  std::uint64_t most_visits = 0;  ///< of a ray: branches, instances, leaves and nodes taken as one voxel
   std::uint64_t bytes = 0;        ///< words and pixel offsets
 
   [[nodiscard]] std::uint64_t all_rays() const {
@@ -181,7 +184,8 @@ struct LogTotals {
   /// Number of steps that the log records: visits, tests, rays, shades, lights, texels, cuts, passes
   /// and questions whether a hit counts.
   [[nodiscard]] std::uint64_t all_steps() const {
-    return all_rays() + branches + leaves + tests + shades + lights + texels + cuts + passes + any_hits;
+    return all_rays() + branches + transforms + leaves + tests + shades + lights + texels + cuts + passes +
+           any_hits;
   }
 };
 

@@ -125,8 +125,8 @@ void check_simt(const program::WorkLog& log, const machine::MachineConfig& confi
   // Of a bvh a leaf that is taken as one voxel has no record.
   const cost::StepCounts steps = result.steps();
   const bool leaf_records = !accel::walks_bvh(log.traversal);
-  const std::int64_t most = steps.branches + (leaf_records ? steps.leaves : 0) + steps.cuts + steps.lists +
-                            steps.tests + steps.passes;
+  const std::int64_t most = steps.branches + steps.transforms + (leaf_records ? steps.leaves : 0) +
+                            steps.cuts + steps.lists + steps.tests + steps.passes;
   const std::int64_t records = counts.records - counts.fills;
   walk::require(records <= most && records >= most - (leaf_records ? 0 : steps.cuts),
                 "lanes read each record of their rays once");

@@ -22,13 +22,14 @@ std::int64_t samples_with_rays(const program::WorkLog& log) {
 }
 
 void check_steps(const program::LogTotals& totals, const cost::StepCounts& steps) {
-  const std::array<std::pair<std::int64_t, std::uint64_t>, 15> pairs = {{
+  const std::array<std::pair<std::int64_t, std::uint64_t>, 16> pairs = {{
       {steps.camera_rays, totals.rays[0]},
       {steps.shadow_rays, totals.rays[1]},
       {steps.reflection_rays, totals.rays[2]},
       {steps.refraction_rays, totals.rays[3]},
       {steps.diffuse_rays, totals.rays[4]},
       {steps.branches, totals.branches},
+      {steps.transforms, totals.transforms},
       {steps.leaves, totals.leaves},
       {steps.tests, totals.tests},
       {steps.lookups, totals.lookups},

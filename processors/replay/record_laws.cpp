@@ -84,6 +84,8 @@ std::array<Extent, memory::record_kinds> extents_of(const program::WorkLog& log,
   const std::int64_t cuts = result.leaf_records ? 0 : steps.cuts;  // a leaf without a record may be cut
   lines.add_records(of(node), count(node) - cuts, layout.node_bytes, node_stride);
   of(node).most += cuts * lines.most_lines(layout.node_bytes, node_stride);
+  lines.add_records(of(transform), count(transform), layout.transform_bytes,
+                    lines.stride(layout.transform_bytes));
   lines.add_lists(of(list), count(list), log.mailboxes ? steps.lookups : steps.tests, layout.entry_bytes);
   if (layout.leaf == memory::LeafLayout::inline_records) {
     const std::uint32_t bytes = walk::inline_record_bytes(log, layout);

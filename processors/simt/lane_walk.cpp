@@ -10,6 +10,7 @@ LaneWalk::LaneWalk(const walk::ReplayInput& input)
       entries_(input.log.topology.entries.data()),
       rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
       node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
+      transform_bytes_(input.layout.record_bytes(memory::RecordKind::transform)),
       entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
       lists_(input.config.layout.leaf == memory::LeafLayout::list),
       written_(input.config.pixels == machine::Pixels::written) {}
@@ -35,9 +36,17 @@ bool LaneWalk::node_record(Lane& lane, std::uint32_t node, Test test) const {
   return true;
 }
 
+void LaneWalk::transform_record(Lane& lane, std::uint32_t node, Test test) const {
+  lane.origin.level = topology_[node].level;
+  const auto kind = memory::RecordKind::transform;
+  lane.record = {input_.layout.address(kind, rank_[node]), transform_bytes_, kind, test};
+}
+
 Record LaneWalk::first_record(std::uint32_t node) const {
   Lane lane;
-  if (!node_record(lane, node, Test::none)) {
+  if (topology_[node].instance) {
+    transform_record(lane, node, Test::none);
+  } else if (!node_record(lane, node, Test::none)) {
     const std::uint32_t first = topology_[node].first;
     const auto kind = lists_ ? memory::RecordKind::list : memory::RecordKind::primitive;
     lane.record = {input_.layout.address(kind, first),
@@ -105,6 +114,11 @@ bool LaneWalk::next_record(Lane& lane, cost::StepCounts& steps) const {
           return true;
         }
         break;
+      case program::Step::transform:
+        ++lane.word;
+        ++steps.transforms;
+        transform_record(lane, operand, Test::transform);
+        return true;
       case program::Step::cut:
         ++lane.word;
         ++steps.cuts;

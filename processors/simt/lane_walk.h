@@ -15,8 +15,8 @@
 namespace marti::processors::simt {
 
 /// What follows when a lane has its record; the first is for lists.
-enum class Test : std::uint8_t { none, box, leaf, triangle, quadric };
-inline constexpr std::size_t tests = 5;
+enum class Test : std::uint8_t { none, box, transform, leaf, triangle, quadric };
+inline constexpr std::size_t tests = 6;
 
 /// A record that a lane reads.
 struct Record {
@@ -93,12 +93,14 @@ class LaneWalk {
 
  private:
   bool node_record(Lane& lane, std::uint32_t node, Test test) const;
+  void transform_record(Lane& lane, std::uint32_t instance, Test test) const;
 
   const walk::ReplayInput& input_;
   const accel::TopologyNode* topology_;
   const std::uint32_t* entries_;
   const std::uint32_t* rank_;  // null: records lie in the order of node numbers
   std::uint32_t node_bytes_;
+  std::uint32_t transform_bytes_;
   std::uint32_t entry_bytes_;
   bool lists_;    // leaves have lists; else their primitives lie in a row
   bool written_;  // pixels are

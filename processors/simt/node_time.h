@@ -119,6 +119,7 @@ class NodeTime {
   static A activity_of(memory::RecordKind kind) {
     switch (kind) {
       case memory::RecordKind::node:
+      case memory::RecordKind::transform:
       case memory::RecordKind::list:
         return A::traversal;
       case memory::RecordKind::primitive:

@@ -204,7 +204,7 @@ void SimtNode::begin_test(const WarpLanes& lanes, Test test, LaneState from) {
     ending_.push_back({lanes, from});
     return;
   }
-  const bool box = test == Test::box || test == Test::leaf;
+  const bool box = test == Test::box || test == Test::transform || test == Test::leaf;
   const LaneState state = box ? LaneState::box : LaneState::primitive;
   move(lanes.warp, lanes.lanes, from, state);
   const machine::RtUnitConfig& rt = shared_.input.config.rt;
@@ -357,8 +357,11 @@ void SimtNode::put_prefetches() {
       const auto kind = memory::RecordKind::node;
       const std::uint32_t first = shared_.treelets->begin[wish.treelet];
       (void)walk::each_line_of(
-          shared_.treelets->begin[wish.treelet + 1] - first, layout.record_bytes(kind), shared_.unit_shift,
-          [&](std::uint32_t number) { return std::optional(layout.address(kind, first + number)); },
+          shared_.treelets->begin[wish.treelet + 1] - first, shared_.unit_shift,
+          [&](std::uint32_t number) {
+            return std::optional(
+                walk::RecordBytes{layout.address(kind, first + number), layout.record_bytes(kind)});
+          },
           [&](std::uint32_t line) { return put(kind, line); });
     }
   }

@@ -27,8 +27,8 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
   price(ShaderStep::texel, ticks.texel);
   price(ShaderStep::any_hit, ticks.any_hit);
   price(ShaderStep::pixel, ticks.pixel);
-  const RoundCounts of_round = {ticks.branch, ticks.leaf,        ticks.cut,      ticks.pass,
-                                ticks.test,   ticks.sphere_test, ticks.cone_test};
+  const RoundCounts of_round = {ticks.branch, ticks.transform, ticks.leaf,        ticks.cut,
+                                ticks.pass,   ticks.test,      ticks.sphere_test, ticks.cone_test};
   for (std::size_t step = 0; step < round_steps; ++step) {
     round_cycles[step] = of_round[step] / period;
   }
@@ -48,7 +48,8 @@ SimtShared::SimtShared(const walk::ReplayInput& replay)
     stack_places = walk::stack_places(replay.log, replay.config, replay.layout);
     stack_size = {rt.stack, replay.config.reference_bytes() / machine::stack_entry_bytes};
   }
-  test_cycles = {0, rt.box_cycles, rt.leaf_cycles, rt.triangle_cycles, rt.quadric_cycles};
+  test_cycles = {
+      0, rt.box_cycles, rt.transform_cycles, rt.leaf_cycles, rt.triangle_cycles, rt.quadric_cycles};
 }
 
 SimtNode::SimtNode(SimtShared& shared, const WriteRoom& room, cost::NodeStatistics& statistics,

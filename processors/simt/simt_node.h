@@ -28,9 +28,10 @@
 
 namespace marti::processors::simt {
 
-/// Steps of a round without a unit: branches, leaves, cuts, passes; then tests of triangles, spheres, cones.
-inline constexpr std::size_t round_visits = 4;
-inline constexpr std::size_t round_steps = 7;
+/// Steps of a round without a unit: branches, instances, leaves, cuts, passes; then tests of triangles,
+/// spheres, cones.
+inline constexpr std::size_t round_visits = 5;
+inline constexpr std::size_t round_steps = 8;
 using RoundCounts = std::array<std::int64_t, round_steps>;
 
 /// What all nodes share. Prices are in cycles.

@@ -14,13 +14,9 @@ std::uint32_t pixels_of(const machine::Packet& packet) {
 }
 
 RoundCounts round_counts(const cost::StepCounts& steps) {
-  return {steps.branches,
-          steps.leaves,
-          steps.cuts,
-          steps.passes,
-          steps.tests - steps.sphere_tests - steps.cone_tests,
-          steps.sphere_tests,
-          steps.cone_tests};
+  return {steps.branches,     steps.transforms, steps.leaves,
+          steps.cuts,         steps.passes,     steps.tests - steps.sphere_tests - steps.cone_tests,
+          steps.sphere_tests, steps.cone_tests};
 }
 
 std::int64_t product(std::int64_t cycles, std::int64_t steps) { return sim::multiply_ticks(cycles, steps); }

@@ -16,8 +16,7 @@ namespace marti::processors::walk {
 
 /// Whether records of this kind are read for a node of the tree.
 [[nodiscard]] constexpr bool of_tree(memory::RecordKind kind) {
-  return kind == memory::RecordKind::node || kind == memory::RecordKind::list ||
-         kind == memory::RecordKind::primitive;
+  return kind <= memory::RecordKind::primitive;
 }
 
 /// What a reference was for: a work log's `ray` operand (ray_operand(), the bounce at most

@@ -41,6 +41,7 @@ class LogWalker {
         entries_(input.log.topology.entries.data()),
         rank_(input.node_rank.empty() ? nullptr : input.node_rank.data()),
         node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
+        transform_bytes_(input.layout.record_bytes(memory::RecordKind::transform)),
         entry_bytes_(input.layout.record_bytes(memory::RecordKind::list)),
         line_bytes_(input.config.reference_bytes()),
         unit_shift_(static_cast<unsigned>(std::countr_zero(line_bytes_))),
@@ -524,6 +525,15 @@ class LogWalker {
         ++steps.cuts;
         spend(cursor, ticks_.cut, 1);
         return refer_node<RunAhead>(cache, cursor, statistics, operand, stop);
+      case program::Step::transform:
+        ++steps.transforms;
+        spend(cursor, ticks_.transform, 1);
+        if constexpr (guarded) {
+          cursor.branch = operand;
+        }
+        note_node(cursor, operand);
+        return refer<RunAhead>(cache, cursor, statistics, memory::RecordKind::transform, rank_[operand],
+                               transform_bytes_, stop);
       case program::Step::pass:
         ++steps.passes;
         spend(cursor, ticks_.pass, 1);
@@ -580,6 +590,7 @@ class LogWalker {
   const std::uint32_t* entries_;
   const std::uint32_t* rank_;  // null: records lie in the order of node numbers
   std::uint32_t node_bytes_;
+  std::uint32_t transform_bytes_;
   std::uint32_t entry_bytes_;
   std::uint32_t line_bytes_;
   unsigned unit_shift_;

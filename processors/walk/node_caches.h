@@ -13,7 +13,7 @@
 namespace marti::processors::walk {
 
 /// Which of the split caches a record kind uses.
-inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 1, 2, 3, 3, 3};
+inline constexpr std::array<std::uint8_t, memory::record_kinds> split_cache_of = {0, 0, 1, 2, 3, 3, 3};
 
 /// Whether the caches count more than hits and misses: CountedCaches, and these guarded.
 template <class Caches>

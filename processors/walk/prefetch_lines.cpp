@@ -6,7 +6,7 @@ namespace marti::processors::walk {
 
 PrefetchLines::PrefetchLines(const ReplayInput& input, std::uint32_t line_bytes)
     : input_(input),
-      node_bytes_(input.layout.record_bytes(memory::RecordKind::node)),
+      instances_(accel::has_instances(input.log.topology)),
       shift_(static_cast<unsigned>(std::countr_zero(line_bytes))) {}
 
 std::optional<std::uint32_t> PrefetchLines::next(memory::RecordKind kind, std::uint32_t line) const {

@@ -9,20 +9,25 @@
 
 namespace marti::processors::walk {
 
-/// Calls visit(line) for the lines of `count` records of `bytes` each, in ascending order, until one call
-/// returns false; returns the last call's result, or true without records. address_of(i) is the address of
-/// record i, which ascends, or none for a record that is left out. `shift`: a line has 2^shift bytes.
-template <class AddressOf, class Visit>
-bool each_line_of(std::uint32_t count, std::uint32_t bytes, unsigned shift, const AddressOf& address_of,
-                  const Visit& visit) {
+/// A record.
+struct RecordBytes {
+  memory::Address at = 0;
+  std::uint32_t bytes = 0;
+};
+
+/// Calls visit(line) for the lines of `count` records, in ascending order, until one call returns false;
+/// returns the last call's result, or true without records. record(i) is record i, whose address ascends, or
+/// none for a record that is left out. `shift`: a line has 2^shift bytes.
+template <class RecordOf, class Visit>
+bool each_line_of(std::uint32_t count, unsigned shift, const RecordOf& record_of, const Visit& visit) {
   std::uint32_t from = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::optional<memory::Address> address = address_of(i);
-    if (!address) {
+    const std::optional<RecordBytes> record = record_of(i);
+    if (!record) {
       continue;
     }
-    const auto first = static_cast<std::uint32_t>(*address >> shift);
-    const auto last = static_cast<std::uint32_t>((*address + bytes - 1) >> shift);
+    const auto first = static_cast<std::uint32_t>(record->at >> shift);
+    const auto last = static_cast<std::uint32_t>((record->at + record->bytes - 1) >> shift);
     for (std::uint32_t line = first < from ? from : first; line <= last; ++line) {
       if (!visit(line)) {
         return false;
@@ -47,20 +52,25 @@ class PrefetchLines {
   template <class Visit>
   bool each_child_line(std::uint32_t branch, const Visit& visit) const {
     const accel::TopologyNode& node = input_.log.topology.nodes[branch];
+    // Transforms lie behind all records of nodes.
     return each_line_of(
-        node.count, node_bytes_, shift_,
-        [&](std::uint32_t number) -> std::optional<memory::Address> {
-          const std::uint32_t child = node.first + number;
+        instances_ ? 2 * node.count : node.count, shift_,
+        [&](std::uint32_t number) -> std::optional<RecordBytes> {
+          const bool instance = number >= node.count;
+          const std::uint32_t child = node.first + (instance ? number - node.count : number);
           const std::uint32_t record = input_.node_rank.empty() ? child : input_.node_rank[child];
-          return record == no_record ? std::nullopt
-                                     : std::optional(input_.layout.address(memory::RecordKind::node, record));
+          if (record == no_record || (instances_ && input_.log.topology.nodes[child].instance != instance)) {
+            return std::nullopt;
+          }
+          const auto kind = instance ? memory::RecordKind::transform : memory::RecordKind::node;
+          return RecordBytes{input_.layout.address(kind, record), input_.layout.record_bytes(kind)};
         },
         visit);
   }
 
  private:
   ReplayInput input_;
-  std::uint32_t node_bytes_;
+  bool instances_;  ///< whether there are any
   unsigned shift_;
 };
 

@@ -16,7 +16,14 @@ std::uint64_t node_records(const program::WorkLog& log) {
     return nodes.size();
   }
   return static_cast<std::uint64_t>(
-      std::count_if(nodes.begin(), nodes.end(), [](const accel::TopologyNode& node) { return !node.leaf; }));
+      std::count_if(nodes.begin(), nodes.end(),
+                    [](const accel::TopologyNode& node) { return !node.leaf && !node.instance; }));
+}
+
+std::uint64_t transform_records(const program::WorkLog& log) {
+  return accel::walks_bvh(log.traversal) ? static_cast<std::uint64_t>(std::ranges::count_if(
+                                               log.topology.nodes, &accel::TopologyNode::instance))
+                                         : 0;
 }
 
 std::optional<TreePlan> tree_plan_of(const program::WorkLog& log, const machine::MachineConfig& config,
@@ -71,6 +78,7 @@ memory::Layout layout_of(const program::WorkLog& log, const machine::MachineConf
   }
   const std::uint64_t entries = log.topology.entries.size();
   const memory::RecordCounts counts = {plan ? plan->initial_nodes() : node_records(log),
+                                       transform_records(log),
                                        plan             ? plan->initial_entries()
                                        : inline_records ? 0
                                                         : entries,

@@ -12,9 +12,11 @@
 
 namespace marti::processors::walk {
 
-/// Number of nodes that have a record in a tree that is given: of a bvh its branches, whose records hold the
-/// boxes and places of their children.
+/// Number of nodes that have a record of their own in a tree that is given: of a bvh its branches, whose
+/// records hold the boxes and places of their children, without instances.
 [[nodiscard]] std::uint64_t node_records(const program::WorkLog& log);
+/// Number of instances, each of which has a transform.
+[[nodiscard]] std::uint64_t transform_records(const program::WorkLog& log);
 
 /// The plan by which the tree is built, from the `starts` of its branches or, without any, from those that
 /// the configuration gives (build_start.h); std::nullopt when the tree is given.

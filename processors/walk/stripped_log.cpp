@@ -194,9 +194,9 @@ std::string StrippedLog::key_of(const machine::MachineConfig& config) {
   const memory::LayoutConfig& layout = config.layout;
   for (const std::uint32_t bytes :
        {layout.node_bytes, layout.entry_bytes, layout.primitive_bytes, layout.quadric_bytes,
-        layout.material_bytes, layout.texel_bytes, layout.pixel_bytes, layout.record_alignment,
-        layout.section_alignment, config.word_bytes, config.cache.cache.line, config.packets.width,
-        config.packets.height}) {
+        layout.material_bytes, layout.texel_bytes, layout.pixel_bytes, layout.transform_bytes,
+        layout.record_alignment, layout.section_alignment, config.word_bytes, config.cache.cache.line,
+        config.packets.width, config.packets.height}) {
     add(bytes);
   }
   add(static_cast<unsigned>(layout.node_order));

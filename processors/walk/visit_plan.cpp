@@ -107,6 +107,10 @@ VisitPlan plan_visits(const program::WorkLog& log, const memory::Layout& layout,
   Planner planner(layout, line_shift, ticks, plan);
   for (std::uint32_t number = 0; number < topology.nodes.size(); ++number) {
     const accel::TopologyNode& node = topology.nodes[number];
+    if (node.instance) {  // taken record by record
+      plan.visits.emplace_back();
+      continue;
+    }
     planner.begin(node.leaf);
     if (const std::uint32_t record = rank.empty() ? number : rank[number]; record != no_record) {
       planner.read(RecordKind::node, record, 1, VisitCount::node_line);

@@ -55,7 +55,8 @@ struct VisitTally {
 };
 
 /// A planned visit; a leaf's tests all its entries, each after a look-up where there are mailboxes. A visit
-/// that does not fit (more than 255 of anything, or 2^61 ticks) has no lines and is taken record by record.
+/// to an instance, or one that does not fit (more than 255 of anything, or 2^61 ticks), has no lines and is
+/// taken record by record.
 struct alignas(32) Visit {
   std::uint32_t begin = 0;  ///< first of its lines in VisitPlan::lines
   std::uint32_t lines = 0;

@@ -115,8 +115,8 @@ void add_speed(std::vector<FigureEntry>& all) {
 // The steps of the work log, as its totals count them.
 Formula all_steps() {
   Formula sum = all_rays();
-  for (const std::string_view step :
-       {"branches", "leaves", "tests", "shades", "lights", "texels", "cuts", "passes", "any_hits"}) {
+  for (const std::string_view step : {"branches", "transforms", "leaves", "tests", "shades", "lights",
+                                      "texels", "cuts", "passes", "any_hits"}) {
     sum = sum + own("steps_" + std::string(step));
   }
   return sum;
@@ -273,8 +273,10 @@ void add_rays(std::vector<FigureEntry>& all) {
     add("rays_a_second_" + std::string(kind), "1/s", "those of this kind", Better::higher,
         a_second(own(rays_of(kind))));
   }
-  add("visits_a_ray", "1", "branches, leaves and nodes taken as one voxel that a ray visits, mean",
-      Better::lower, (own("steps_branches") + own("steps_leaves") + own("steps_cuts")) / all_rays());
+  add("visits_a_ray", "1", "branches, instances, leaves and nodes taken as one voxel that a ray visits, mean",
+      Better::lower,
+      (own("steps_branches") + own("steps_transforms") + own("steps_leaves") + own("steps_cuts")) /
+          all_rays());
   add("memory_bytes_a_ray", "byte", "read from memory for a ray, by whole lines", Better::lower,
       own("memory_bytes_read") / all_rays());
 }

@@ -49,7 +49,7 @@ constexpr auto index_of = [](RefitWay way) { return static_cast<std::size_t>(way
 
 struct RefitOutcome {
   sim::Ticks render = 0;
-  std::uint64_t records = 0;  ///< of branches and instances that are written before the frame
+  std::uint64_t records = 0;  ///< of branches and transforms that are written before the frame
   std::uint64_t bytes = 0;    ///< of these
   double cost = 0.0;          ///< Bvh::sah_cost; 0 with kept instances
   double seconds = 0.0;       ///< host: making the tree
@@ -120,8 +120,7 @@ std::vector<bool> altered(const Tree& tree, const Moved& moved) {
   std::vector<bool> nodes(topology.nodes.size());
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const accel::TopologyNode& node = topology.nodes[n];
-    const bool is_instance = n < instances.size() && node.count == 1 && !topology.nodes[node.first].leaf;
-    bool any = is_instance && moved.instances[instances[n]];
+    bool any = node.instance && moved.instances[instances[n]];
     for (std::uint32_t i = node.first; i < node.first + node.count && !any; ++i) {
       any = node.leaf ? moved.primitives[topology.entries[i]] : nodes[i];
     }
@@ -151,15 +150,18 @@ std::vector<bool> written_nodes(const Tree& tree, const Moved& moved, RefitWay w
   return written;
 }
 
-/// How many records a way writes. Leaves have none.
+/// Notes how many records a way writes. Leaves have none.
 template <class Tree>
-std::uint64_t records_written(const Tree& tree, const Moved& moved, RefitWay way) {
+void count_records(const Tree& tree, const Moved& moved, RefitWay way, const memory::LayoutConfig& layout,
+                   RefitOutcome& outcome) {
   const std::vector<bool> written = written_nodes(tree, moved, way);
-  std::uint64_t records = 0;
   for (std::size_t n = 0; n < written.size(); ++n) {
-    records += written[n] && !tree.topology().nodes[n].leaf ? 1U : 0U;
+    const accel::TopologyNode& node = tree.topology().nodes[n];
+    if (written[n] && !node.leaf) {
+      ++outcome.records;
+      outcome.bytes += node.instance ? layout.transform_bytes : layout.node_bytes;
+    }
   }
-  return records;
 }
 
 Bvh refit(const Bvh& tree, const Set& moved) { return tree.refitted(moved); }
@@ -216,8 +218,7 @@ class RefitStudy {
       const accel::StructureOf<Tree> tree(make());
       of.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
       of.cost = cost_of(tree.concrete());
-      of.records = records_written(tree.concrete(), moved, way);
-      of.bytes = of.records * accel::bvh_record_bytes(options_.node);
+      count_records(tree.concrete(), moved, way, config_.machine.layout, of);
       if (way == RefitWay::rebuild_top) {
         sim::ensure(tree.topology().nodes.size() == rebuilt_nodes_, "a top level rebuilt gives another tree");
         of.render = outcome.of(RefitWay::rebuild).render;  // of an equal tree
@@ -284,7 +285,8 @@ tables::Table refit_table(const std::vector<RefitFrame>& frames, bool instances)
        tables::text_column("way", "how its tree is made"),
        tables::integer_column("render", "ps", "time of the frame, the tree being given"),
        tables::real_column("slower", "fraction", "by which it takes longer than with the rebuilt tree"),
-       tables::count_column("records", "records of branches and instances that are written before the frame"),
+       tables::count_column("records",
+                            "records of branches and transforms that are written before the frame"),
        tables::integer_column("written", "byte", "bytes of these"),
        tables::real_column("cost", "",
                            "expected visits and tests of a ray that meets the root's box; without kept "

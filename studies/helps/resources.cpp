@@ -115,7 +115,8 @@ void add_nodes(const Changer& changer, const MachineConfig& machine, const Frame
   }
 }
 
-void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<Resource>& resources) {
+void add_simt(const Changer& changer, const MachineConfig& machine, const FrameFacts& facts,
+              std::vector<Resource>& resources) {
   if (machine.kind == NodeKind::core) {
     return;
   }
@@ -148,6 +149,9 @@ void add_simt(const Changer& changer, const MachineConfig& machine, std::vector<
   for (const std::string_view test :
        {"rt.box_cycles", "rt.leaf_cycles", "rt.triangle_cycles", "rt.quadric_cycles"}) {
     resources.push_back(fewer(changer, Part::nodes, test));
+  }
+  if (facts.instances) {
+    resources.push_back(fewer(changer, Part::nodes, "rt.transform_cycles"));
   }
 }
 
@@ -241,6 +245,7 @@ FrameFacts facts_of(const MachineResult& result) {
   facts.packets = result.packets;
   facts.pixels = result.pixels;
   facts.database_bytes = result.database_bytes;
+  facts.instances = result.steps().transforms > 0;
   facts.writes_waited =
       result.time()[static_cast<std::size_t>(processors::cost::Activity::queue_full_wait)] > 0;
   facts.waited_for_banks =
@@ -255,7 +260,7 @@ std::vector<Resource> resources_of(const Changer& changer, const MachineConfig& 
                                    const FrameFacts& facts) {
   std::vector<Resource> resources;
   add_nodes(changer, machine, facts, resources);
-  add_simt(changer, machine, resources);
+  add_simt(changer, machine, facts, resources);
   add_caches(changer, machine, facts.database_bytes, resources);
   add_local_memory(changer, machine, resources);
   add_shared_memory(changer, machine, facts, resources);

@@ -80,6 +80,7 @@ struct FrameFacts {
   std::uint64_t packets = 0;
   std::uint64_t pixels = 0;
   std::uint64_t database_bytes = 0;
+  bool instances = true;         ///< rays were brought into the coordinates of meshes
   bool writes_waited = true;     ///< a node has waited for room in its write buffer
   bool waited_for_banks = true;  ///< an access has waited for its bank
 };

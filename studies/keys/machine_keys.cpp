@@ -38,8 +38,9 @@ constexpr std::array<std::pair<std::string_view, std::int64_t processors::machin
         {"costs.store", &processors::machine::OperationCycles::store},
     }};
 
-constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 7> records = {{
+constexpr std::array<std::pair<std::string_view, std::uint32_t memory::LayoutConfig::*>, 8> records = {{
     {"layout.node", &memory::LayoutConfig::node_bytes},
+    {"layout.transform", &memory::LayoutConfig::transform_bytes},
     {"layout.entry", &memory::LayoutConfig::entry_bytes},
     {"layout.primitive", &memory::LayoutConfig::primitive_bytes},
     {"layout.quadric", &memory::LayoutConfig::quadric_bytes},
@@ -88,6 +89,7 @@ void declare_memory(Schema& schema) {
   schema.section("layout", "sizes of the database's records and where they lie");
   const std::array<std::pair<std::string_view, std::string_view>, records.size()> sizes_of_records = {{
       {"8 B", "bytes of one node record; not with structure.kind = \"bvh\", whose nodes have their own"},
+      {"64 B", "bytes of one instance that is kept: its transform and where its mesh begins"},
       {"4 B", "bytes of one entry record"},
       {"48 B", "bytes of one primitive record that is a triangle"},
       {"40 B", "bytes of one sphere, cylinder or cone: two points, two radii, kind and material"},
@@ -111,7 +113,8 @@ void declare_memory(Schema& schema) {
                 "primitives lie in a row, one record for each reference");
   schema.section("cache", "the private cache of a node; it holds what is read of the database");
   schema.choice("cache.organisation", "unified", names(processors::machine::cache_organisation_names),
-                "no cache, one for all records, or one each for nodes, lists, primitives and shading data");
+                "no cache, one for all records, or one each for nodes with transforms, lists, primitives and "
+                "shading data");
   schema.size("cache.size", "16 KiB", {"1 B", "4 GiB"}, "size of the unified cache");
   const std::array<std::string_view, processors::machine::split_caches> sizes = {"4 KiB", "2 KiB", "8 KiB",
                                                                                  "2 KiB"};

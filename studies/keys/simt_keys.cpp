@@ -78,11 +78,13 @@ void declare_simt_keys(sim::Schema& schema) {
                 "bvh: from whom a lane without work takes a node that a ray has entered; warp: the lane of "
                 "its warp in the unit with most of them");
   cycles(schema, "rt.box_cycles", 8, "cycles to test the boxes of a branch");
+  cycles(schema, "rt.transform_cycles", 8,
+         "cycles to bring a ray into the coordinates of a kept instance's mesh");
   cycles(schema, "rt.leaf_cycles", 4, "cycles to take in a leaf's record");
   cycles(schema, "rt.triangle_cycles", 8, "cycles to test a triangle");
   cycles(schema, "rt.quadric_cycles", 16, "cycles to test a sphere, cylinder or cone");
   schema.integer("rt.box_units", 0, {0, most_test_units}, "",
-                 "tests of branches and leaves that may begin in a cycle; 0: any number");
+                 "tests of branches, instances and leaves that may begin in a cycle; 0: any number");
   schema.integer("rt.triangle_units", 0, {0, most_test_units}, "",
                  "tests of primitives that may begin in a cycle; 0: any number");
   schema.integer(
@@ -137,6 +139,7 @@ void read_simt(sim::Config& config, processors::machine::MachineConfig& machine)
     rt.scheduler = config.choice_as<processors::machine::RtScheduler>("rt.scheduler");
     read_share(config, rt);
     rt.box_cycles = config.integer("rt.box_cycles");
+    rt.transform_cycles = config.integer("rt.transform_cycles");
     rt.leaf_cycles = config.integer("rt.leaf_cycles");
     rt.triangle_cycles = config.integer("rt.triangle_cycles");
     rt.quadric_cycles = config.integer("rt.quadric_cycles");

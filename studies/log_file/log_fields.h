@@ -45,7 +45,8 @@ void describe(Fields<Stream>& fields, Log& log) {
   fields.choice(log.integrator, processors::program::integrator_names.size());
   fields.choice(log.order, accel::walk_order_names.size());
   fields(log.treelet_records, log.mailboxes, log.width, log.height, log.samples);
-  fields.each(log.topology.nodes, [&](auto& node) { fields(node.first, node.count, node.level, node.leaf); });
+  fields.each(log.topology.nodes,
+              [&](auto& node) { fields(node.first, node.count, node.level, node.leaf, node.instance); });
   fields(log.topology.entries);
   fields.each(log.topology.work, [&](auto& work) { fields(work.listed, work.overlaps); });
   fields(log.primitives);

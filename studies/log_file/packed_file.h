@@ -20,7 +20,7 @@
 namespace marti::studies::log_file {
 
 /// Version of what is in the file. Change it with every change of a description of fields.
-inline constexpr std::uint32_t format_version = 1;
+inline constexpr std::uint32_t format_version = 2;
 
 /// Unpacked bytes of a part, at most.
 inline constexpr std::size_t part_bytes = std::size_t{1} << 20U;

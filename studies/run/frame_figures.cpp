@@ -60,8 +60,9 @@ void add_log(figures::FigureParts& parts, const processors::program::LogTotals& 
                    figures::Better::program},
                   log.bytes);
   add(parts, "log_branches", "branches visited", log.branches);
+  add(parts, "log_transforms", "instances visited", log.transforms);
   add(parts, "log_leaves", "leaves visited", log.leaves);
-  add(parts, "log_visits_95", "branches, leaves and voxels that 95 % of the rays visit at most",
+  add(parts, "log_visits_95", "branches, instances, leaves and voxels that 95 % of the rays visit at most",
       log.visits_95);
   add(parts, "log_most_visits", "the most of these that a ray visits", log.most_visits);
   add(parts, "log_tests", "primitives tested", log.tests);

@@ -58,6 +58,7 @@ Json structure_json(const run::RunResult& r) {
           {"mailboxes", r.functional.frame.log->mailboxes},
           {"notes", r.functional.structure_notes},
           {"node_records", processors::walk::node_records(*r.functional.frame.log)},
+          {"transform_records", processors::walk::transform_records(*r.functional.frame.log)},
           {"node_bytes", r.machine.layout.node_bytes},
           {"levels", levels}};
 }
@@ -81,8 +82,9 @@ Json figures_json(const run::RunResult& r) {
 }
 
 Json log_json(const processors::program::LogTotals& t) {
-  return {{"bytes", t.bytes},       {"branches", t.branches}, {"leaves", t.leaves}, {"tests", t.tests},
-          {"lookups", t.lookups},   {"shades", t.shades},     {"lights", t.lights}, {"texels", t.texels},
+  return {{"bytes", t.bytes},       {"branches", t.branches}, {"transforms", t.transforms},
+          {"leaves", t.leaves},     {"tests", t.tests},       {"lookups", t.lookups},
+          {"shades", t.shades},     {"lights", t.lights},     {"texels", t.texels},
           {"any_hits", t.any_hits}, {"cuts", t.cuts},         {"passes", t.passes}};
 }
 

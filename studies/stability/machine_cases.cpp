@@ -47,6 +47,7 @@ const std::vector<Duration>& durations() {
       {"costs.store", [](M& m) -> std::int64_t& { return m.operations.store; }},
       {"node.switch_cycles", [](M& m) -> std::int64_t& { return m.switch_cycles; }},
       {"rt.box_cycles", [](M& m) -> std::int64_t& { return m.rt.box_cycles; }},
+      {"rt.transform_cycles", [](M& m) -> std::int64_t& { return m.rt.transform_cycles; }},
       {"rt.leaf_cycles", [](M& m) -> std::int64_t& { return m.rt.leaf_cycles; }},
       {"rt.triangle_cycles", [](M& m) -> std::int64_t& { return m.rt.triangle_cycles; }},
       {"rt.quadric_cycles", [](M& m) -> std::int64_t& { return m.rt.quadric_cycles; }},

@@ -156,7 +156,7 @@ TEST_F(SavedLog, RefusesOtherFilesAndDamagedOnes) {
   std::string newer = bytes;
   newer[16] = 77;
   write(log_, newer);
-  expect_refused(run, "is a work log of format 77, and this program reads format 1");
+  expect_refused(run, "is a work log of format 77, and this program reads format 2");
   bytes[bytes.size() - 9] = static_cast<char>(~bytes[bytes.size() - 9]);
   write(log_, bytes);
   expect_refused(run, "is damaged");

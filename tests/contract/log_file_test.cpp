@@ -106,7 +106,9 @@ MachineConfig any_machine(Random& random, const WorkLog& log) {
       make_random_pipeline(random, machine);
       break;
     case 2:
-      make_random_space(random, machine);
+      if (!accel::has_instances(log.topology)) {
+        make_random_space(random, machine);
+      }
       break;
     case 3:
       if (tree) {

@@ -75,7 +75,7 @@ inline TimedCase pipeline_case(Random& random) {
 }
 
 inline TimedCase space_case(Random& random) {
-  TimedCase made{any_log(random), random_machine(random), {}};
+  TimedCase made{any_log(random, false), random_machine(random), {}};
   make_random_space(random, made.machine);
   add_random_second_level(random, made.machine);
   if (made.machine.l2.sharing == processors::machine::SecondLevel::shared) {

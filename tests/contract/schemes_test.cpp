@@ -48,6 +48,7 @@ void expect_steps(const WorkLog& log, const MachineConfig& machine, const Machin
     EXPECT_EQ(steps.*ray_counters[kind], static_cast<std::int64_t>(totals.rays[kind]));
   }
   EXPECT_EQ(steps.branches, static_cast<std::int64_t>(totals.branches));
+  EXPECT_EQ(steps.transforms, static_cast<std::int64_t>(totals.transforms));
   EXPECT_EQ(steps.leaves, static_cast<std::int64_t>(totals.leaves));
   EXPECT_EQ(steps.tests, static_cast<std::int64_t>(totals.tests));
   const std::array<std::int64_t, 3> tests = test::tests_by_kind(log);

@@ -79,6 +79,7 @@ inline void assign_caches(const processors::machine::MachineConfig& m, Assignmen
   to.set("layout.node", m.layout.node_bytes);
   to.set("layout.entry", m.layout.entry_bytes);
   to.set("layout.primitive", m.layout.primitive_bytes);
+  to.set("layout.transform", m.layout.transform_bytes);
   to.set("layout.quadric", m.layout.quadric_bytes);
   to.set("layout.material", m.layout.material_bytes);
   to.set("layout.texel", m.layout.texel_bytes);

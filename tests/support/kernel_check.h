@@ -50,6 +50,7 @@ inline Aimed random_aimed(Random& random) {
 struct TestCounter {
   std::uint64_t tests = 0;
   void branch(std::uint32_t /*node*/) {}
+  void transform(std::uint32_t /*node*/) {}
   void leaf(std::uint32_t /*node*/, std::uint32_t tested, std::uint32_t /*entries*/) { tests += tested; }
   void mailed_leaf(std::uint32_t /*node*/, std::uint32_t read, std::uint32_t /*entries*/,
                    const std::uint32_t* tested) {

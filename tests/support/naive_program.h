@@ -72,6 +72,9 @@ inline void count_step(const WorkLog& log, const std::uint32_t* word, StepCounts
     case Step::texel:
       ++steps.texels;
       break;
+    case Step::transform:
+      ++steps.transforms;
+      break;
     case Step::cut:
       ++steps.cuts;
       break;
@@ -91,10 +94,11 @@ class NaiveProgram {
   NaiveProgram(const WorkLog& log, const MachineConfig& machine)
       : log_(log),
         machine_(machine),
-        layout_(machine.layout,
-                {count_records(log), log.topology.entries.size(), log.primitives, log.materials,
-                 log.texture_begin.back(), std::uint64_t{log.width} * log.height},
-                log.quadrics.size()),
+        layout_(
+            machine.layout,
+            {count_records(log, false), count_records(log, true), log.topology.entries.size(), log.primitives,
+             log.materials, log.texture_begin.back(), std::uint64_t{log.width} * log.height},
+            log.quadrics.size()),
         ticks_(step_ticks(machine, log)),
         unit_(machine.cache.organisation != CacheOrganisation::none ? machine.cache.cache.line
                                                                     : machine.banks.interleave) {
@@ -105,7 +109,14 @@ class NaiveProgram {
   [[nodiscard]] const StepTicks& ticks() const { return ticks_; }
   [[nodiscard]] std::uint32_t unit() const { return unit_; }
   memory::Address node_address(std::uint32_t node) const {
-    return layout_.address(memory::RecordKind::node, rank_[node]);
+    return layout_.address(record_kind(log_, node), rank_[node]);
+  }
+  /// An instance's record is its transform.
+  static memory::RecordKind record_kind(const WorkLog& log, std::uint32_t node) {
+    return log.topology.nodes[node].instance ? memory::RecordKind::transform : memory::RecordKind::node;
+  }
+  [[nodiscard]] std::uint32_t node_bytes(std::uint32_t node) const {
+    return layout_.record_bytes(record_kind(log_, node));
   }
   /// The leaves of a bounding volume hierarchy have no records.
   static bool has_record(const WorkLog& log, std::uint32_t node) {
@@ -142,14 +153,15 @@ class NaiveProgram {
   }
 
  private:
-  static std::uint64_t count_records(const WorkLog& log) {
+  static std::uint64_t count_records(const WorkLog& log, bool instances) {
     std::uint64_t count = 0;
     for (std::uint32_t node = 0; node < log.topology.nodes.size(); ++node) {
-      count += has_record(log, node) ? 1 : 0;
+      count += has_record(log, node) && log.topology.nodes[node].instance == instances ? 1 : 0;
     }
     return count;
   }
-  // Writes the nodes in their order first, then numbers those with records.
+  // Writes the nodes in their order first, then numbers those with records, instances by themselves. What
+  // several instances have below them comes where the first of them has it.
   void number_records() {
     std::vector<std::uint32_t> order = {0};
     switch (machine_.layout.node_order) {
@@ -166,9 +178,13 @@ class NaiveProgram {
         break;
     }
     rank_.resize(log_.topology.nodes.size());
-    std::uint32_t next = 0;
+    std::vector<bool> numbered(rank_.size());
+    std::array<std::uint32_t, 2> next{};
     for (const std::uint32_t node : order) {
-      rank_[node] = has_record(log_, node) ? next++ : 0;
+      if (!numbered[node] && has_record(log_, node)) {
+        rank_[node] = next[log_.topology.nodes[node].instance ? 1 : 0]++;
+      }
+      numbered[node] = true;
     }
   }
   void order_below(std::uint32_t number, std::vector<std::uint32_t>& order) {
@@ -187,6 +203,7 @@ class NaiveProgram {
     }
     const std::size_t room = std::max<std::size_t>(1, machine_.layout.treelet_bytes / apart);
     std::vector<std::uint32_t> tops = {0};
+    std::vector<bool> taken(log_.topology.nodes.size());  // several instances have one mesh below them
     std::size_t filled = 1;
     while (!tops.empty()) {
       std::vector<std::uint32_t> at_hand = {tops.front()};
@@ -198,7 +215,8 @@ class NaiveProgram {
         const accel::TopologyNode& node = log_.topology.nodes[number];
         std::size_t records = 0;
         for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
-          records += has_record(log_, node.first + child) ? 1 : 0;
+          const std::uint32_t below = node.first + child;
+          records += has_record(log_, below) && !log_.topology.nodes[below].instance && !taken[below] ? 1 : 0;
         }
         if (!node.leaf && (!left.empty() || (filled > 0 && filled + records > room))) {
           left.push_back(number);
@@ -206,8 +224,11 @@ class NaiveProgram {
         }
         filled += records;
         for (std::uint32_t child = 0; !node.leaf && child < node.count; ++child) {
-          order.push_back(node.first + child);
-          at_hand.push_back(node.first + child);
+          if (!taken[node.first + child]) {
+            order.push_back(node.first + child);
+            at_hand.push_back(node.first + child);
+            taken[node.first + child] = true;
+          }
         }
       }
       tops.insert(tops.begin(), left.begin(), left.end());
@@ -228,7 +249,7 @@ class NaiveProgram {
   }
   void read_node(std::vector<Action>& to, std::uint32_t node) const {
     if (has_record(log_, node)) {
-      read(to, memory::RecordKind::node, node_address(node), machine_.layout.node_bytes);
+      read(to, record_kind(log_, node), node_address(node), node_bytes(node));
     }
   }
   void read_material(std::vector<Action>& to, std::uint32_t material) const {
@@ -288,6 +309,12 @@ class NaiveProgram {
       case Step::pass:
         compute(to, Activity::traversal, ticks_.pass);
         read_material(to, operand);
+        break;
+      case Step::transform:
+        compute(to, Activity::traversal, ticks_.transform);
+        read_node(to, operand);
+        to.push_back({Action::What::children});
+        to.back().branch = operand;
         break;
       case Step::cut:
         compute(to, Activity::traversal, ticks_.cut);

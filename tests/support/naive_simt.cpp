@@ -364,12 +364,15 @@ class NaiveSimt final : public sim::EventHandler {
   }
 
   static bool of_box(const Lane& lane) {
-    return lane.record().test == NaiveTest::box || lane.record().test == NaiveTest::leaf;
+    const NaiveTest test = lane.record().test;
+    return test == NaiveTest::box || test == NaiveTest::transform || test == NaiveTest::leaf;
   }
   [[nodiscard]] Cycle test_cycles(NaiveTest test) const {
     switch (test) {
       case NaiveTest::box:
         return machine_.rt.box_cycles;
+      case NaiveTest::transform:
+        return machine_.rt.transform_cycles;
       case NaiveTest::leaf:
         return machine_.rt.leaf_cycles;
       case NaiveTest::triangle:
@@ -1337,10 +1340,12 @@ class NaiveSimt final : public sim::EventHandler {
                                                                                  : Activity::shading;
     }
     if (node.looked_up) {
-      return *node.looked_up == memory::RecordKind::node || *node.looked_up == memory::RecordKind::list
+      const memory::RecordKind kind = *node.looked_up;
+      return kind == memory::RecordKind::primitive ? Activity::intersection
+             : kind == memory::RecordKind::node || kind == memory::RecordKind::transform ||
+                     kind == memory::RecordKind::list
                  ? Activity::traversal
-             : *node.looked_up == memory::RecordKind::primitive ? Activity::intersection
-                                                                : Activity::shading;
+                 : Activity::shading;
     }
     bool second = false;
     for (const Register& one : node.registers) {

@@ -19,7 +19,7 @@
 namespace marti::test {
 
 /// What a lane does with a record in the unit.
-enum class NaiveTest { none, box, leaf, triangle, quadric };
+enum class NaiveTest { none, box, transform, leaf, triangle, quadric };
 
 struct NaiveRecord {
   memory::RecordKind kind = memory::RecordKind::node;
@@ -99,8 +99,8 @@ class NaiveSimtLog {
   }
 
   static bool is_visit(Step step) {
-    return step == Step::branch || step == Step::leaf || step == Step::partial_leaf || step == Step::cut ||
-           step == Step::pass;
+    return step == Step::branch || step == Step::transform || step == Step::leaf ||
+           step == Step::partial_leaf || step == Step::cut || step == Step::pass;
   }
 
   /// Counts a step. Where leaves list no primitives, no list is read.
@@ -166,6 +166,10 @@ class NaiveSimtLog {
         case Step::branch:
           ++waiting.branches;
           take(node(operand, NaiveTest::box));
+          break;
+        case Step::transform:
+          ++waiting.transforms;
+          take(record(memory::RecordKind::transform, rank_[operand], NaiveTest::transform));
           break;
         case Step::cut:
           ++waiting.cuts;
@@ -300,6 +304,9 @@ class NaiveSimtLog {
   }
   [[nodiscard]] NaiveRecord first_record(std::uint32_t number) const {
     const accel::TopologyNode& its = log_.topology.nodes[number];
+    if (its.instance) {
+      return record(memory::RecordKind::transform, rank_[number], NaiveTest::none);
+    }
     if (!its.leaf) {
       return node(number, NaiveTest::box);
     }

@@ -105,10 +105,10 @@ inline processors::program::WorkLog random_log_with_tree(Random& random) {
   }
 }
 
-/// Any log that a machine can time.
-inline processors::program::WorkLog any_log(Random& random) {
+/// Any log that a machine can time; `instances`: one that does not divide space.
+inline processors::program::WorkLog any_log(Random& random, bool instances = true) {
   return pick(random, 0, 3) == 0 ? random_log(random, static_cast<std::uint32_t>(pick(random, 1, 12)),
-                                              static_cast<std::uint32_t>(pick(random, 1, 12)))
+                                              static_cast<std::uint32_t>(pick(random, 1, 12)), 40, instances)
                                  : random_log_with_tree(random);
 }
 

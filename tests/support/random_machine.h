@@ -48,6 +48,43 @@ inline accel::Topology random_topology(Random& random, std::uint32_t branches, s
   return topology;
 }
 
+/// Makes up to four leaves instances of one or two meshes, which are appended; nothing without leaves below
+/// the root.
+inline void add_random_instances(Random& random, accel::Topology& topology, std::uint32_t primitives) {
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t node = 1; node < topology.nodes.size(); ++node) {
+    if (topology.nodes[node].leaf) {
+      leaves.push_back(node);
+    }
+  }
+  std::shuffle(leaves.begin(), leaves.end(), random);
+  leaves.resize(std::min<std::size_t>(leaves.size(), static_cast<std::size_t>(pick(random, 1, 4))));
+  std::uint8_t level = 1;
+  for (const std::uint32_t leaf : leaves) {
+    level = std::max(level, topology.nodes[leaf].level);
+  }
+  const std::size_t meshes = leaves.empty() ? 0 : pick(random, 1, std::min<std::size_t>(2, leaves.size()));
+  std::vector<std::uint32_t> roots;
+  for (std::size_t mesh = 0; mesh < meshes; ++mesh) {
+    const auto root = static_cast<std::uint32_t>(topology.nodes.size());
+    roots.push_back(root);
+    const auto children = static_cast<std::uint32_t>(pick(random, 1, 5));
+    topology.nodes.push_back({root + 1, children, static_cast<std::uint8_t>(level + 1), false});
+    for (std::uint32_t child = 0; child < children; ++child) {
+      const auto count = static_cast<std::uint32_t>(pick(random, 1, 3));
+      topology.nodes.push_back({static_cast<std::uint32_t>(topology.entries.size()), count,
+                                static_cast<std::uint8_t>(level + 2), true});
+      for (std::uint32_t i = 0; i < count; ++i) {
+        topology.entries.push_back(static_cast<std::uint32_t>(pick(random, 0, primitives - 1)));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    accel::TopologyNode& node = topology.nodes[leaves[i]];
+    node = {roots[i < meshes ? i : random() % meshes], 1, node.level, false, true};
+  }
+}
+
 /// Now and then a hit or two of the leaf before that were asked about. They follow from the words so far, so
 /// that random machines are those of logs without them.
 inline void append_any_hits(const processors::program::WorkLog& log, sim::ChunkVector<std::uint32_t>& words) {
@@ -65,9 +102,10 @@ inline void append_any_hits(const processors::program::WorkLog& log, sim::ChunkV
   }
 }
 
-/// A log whose words are random but valid.
+/// A log whose words are random but valid. `instances`: a bounding volume hierarchy may have some.
 inline processors::program::WorkLog random_log(Random& random, std::uint32_t width, std::uint32_t height,
-                                               std::uint32_t most_words_a_pixel = 40) {
+                                               std::uint32_t most_words_a_pixel = 40,
+                                               bool instances = false) {
   using processors::program::make_word;
   using processors::program::Step;
   processors::program::WorkLog log;
@@ -85,8 +123,11 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
   log.voxels = 2;
   log.texture_begin = {0, 100, 356};
   log.topology = random_topology(random, 12, log.primitives, 6);
+  if (instances && accel::walks_bvh(log.traversal) && random() % 4 != 0) {
+    add_random_instances(random, log.topology, log.primitives);
+  }
   std::vector<std::uint32_t> leaves;
-  std::vector<std::uint32_t> branches;
+  std::vector<std::uint32_t> branches;  // and instances
   for (std::uint32_t node = 0; node < log.topology.nodes.size(); ++node) {
     (log.topology.nodes[node].leaf ? leaves : branches).push_back(node);
   }
@@ -105,9 +146,12 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
           case 0:
           case 1:
           case 2:
-          case 3:
-            row.words.push_back(make_word(Step::branch, branches[random() % branches.size()]));
+          case 3: {
+            const std::uint32_t branch = branches[random() % branches.size()];
+            row.words.push_back(
+                make_word(log.topology.nodes[branch].instance ? Step::transform : Step::branch, branch));
             break;
+          }
           case 4:
           case 5:
             row.words.push_back(make_word(Step::leaf, leaf));
@@ -160,10 +204,10 @@ inline processors::program::WorkLog random_log(Random& random, std::uint32_t wid
   return log;
 }
 
-/// A log of an image of up to `most` pixels on each side.
+/// A log of an image of up to `most` pixels on each side, now and then with instances.
 inline processors::program::WorkLog small_log(Random& random, std::int64_t most = 12) {
   const auto width = static_cast<std::uint32_t>(pick(random, 1, most));
-  return random_log(random, width, static_cast<std::uint32_t>(pick(random, 1, most)));
+  return random_log(random, width, static_cast<std::uint32_t>(pick(random, 1, most)), 40, true);
 }
 
 /// Random work for splitting each branch; a branch lists at least the primitives of its leaves.
@@ -337,6 +381,7 @@ inline processors::machine::MachineConfig random_machine(Random& random, std::ui
                         pick(random, 0, 2), pick(random, 0, 2), pick(random, 0, 2), pick(random, 0, 2)};
   machine.write_buffer = static_cast<std::uint32_t>(pick(random, 1, 3));
   machine.layout.node_bytes = static_cast<std::uint32_t>(pick(random, 1, 40));
+  machine.layout.transform_bytes = static_cast<std::uint32_t>(pick(random, 1, 70));
   machine.layout.primitive_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.quadric_bytes = static_cast<std::uint32_t>(pick(random, 1, 100));
   machine.layout.node_order = static_cast<memory::NodeOrder>(pick(random, 0, 2));

@@ -36,7 +36,7 @@ inline processors::machine::MachineConfig random_simt(Random& random,
   rt.scheduler = static_cast<RtScheduler>(pick(random, 0, 2));
   rt.coalesce = static_cast<RtCoalesce>(pick(random, 0, 2));
   for (std::int64_t* const cycles :
-       {&rt.box_cycles, &rt.leaf_cycles, &rt.triangle_cycles, &rt.quadric_cycles}) {
+       {&rt.box_cycles, &rt.transform_cycles, &rt.leaf_cycles, &rt.triangle_cycles, &rt.quadric_cycles}) {
     *cycles = random() % 3 == 0 ? 0 : pick(random, 0, 20);
   }
   rt.box_units = static_cast<std::uint32_t>(pick(random, 0, 4));
@@ -127,8 +127,9 @@ inline std::string describe_simt(const processors::machine::MachineConfig& machi
   value("rt.warps", machine.rt.warps);
   choice("scheduler", rt_scheduler_names, machine.rt.scheduler);
   choice("coalesce", rt_coalesce_names, machine.rt.coalesce);
-  text << "cycles of a box " << machine.rt.box_cycles << ", leaf " << machine.rt.leaf_cycles << ", triangle "
-       << machine.rt.triangle_cycles << ", quadric " << machine.rt.quadric_cycles << ", ";
+  text << "cycles of a box " << machine.rt.box_cycles << ", transform " << machine.rt.transform_cycles
+       << ", leaf " << machine.rt.leaf_cycles << ", triangle " << machine.rt.triangle_cycles << ", quadric "
+       << machine.rt.quadric_cycles << ", ";
   value("box_units", machine.rt.box_units);
   value("triangle_units", machine.rt.triangle_units);
   choice("cache", cache_organisation_names, machine.cache.organisation);

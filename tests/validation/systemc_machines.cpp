@@ -107,7 +107,8 @@ std::deque<ComparedMachine> random_machines(std::uint64_t seed, std::uint32_t co
     const auto width = static_cast<std::uint32_t>(test::pick(random, 1, 12));
     const auto height = static_cast<std::uint32_t>(test::pick(random, 1, 12));
     const std::uint32_t words = i % 4 == 3 ? 1 : 25;
-    machines.push_back({"seed " + std::to_string(seed + i), test::random_log(random, width, height, words),
+    machines.push_back({"seed " + std::to_string(seed + i),
+                        test::random_log(random, width, height, words, true),
                         random_modelled_machine(random)});
     MachineConfig& config = machines.back().config;
     vary_the_rest(random, config);

@@ -42,6 +42,8 @@ sim::Ticks compute_time(const program::WorkLog& log, const cost::StepTicks& tick
       return ticks.light;
     case program::Step::texel:
       return ticks.texel;
+    case program::Step::transform:
+      return ticks.transform;
     case program::Step::cut:
       return ticks.cut;
     case program::Step::pass:

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -115,19 +116,21 @@ accel::Ray random_ray(Random& random, const scenes::Scene& scene, double distanc
   return ray;
 }
 
-/// Checks a walk: branches that are children of those before, and leaves of the mesh that was entered.
+/// Checks a walk: branches and instances that are children of those before, and leaves of the mesh that was
+/// entered.
 class StepCheck {
  public:
   explicit StepCheck(const TwoLevelBvh& tree) : tree_(tree), reached_(tree.topology().nodes.size()) {}
   void begin() { reached_.assign(reached_.size(), false), reached_[0] = true; }
   void branch(std::uint32_t node) {
-    const accel::TopologyNode& branch = tree_.topology().nodes.at(node);
-    EXPECT_FALSE(branch.leaf);
-    EXPECT_TRUE(reached_[node]);
-    for (std::uint32_t child = branch.first; child < branch.first + branch.count; ++child) {
-      reached_.at(child) = true;
-    }
+    EXPECT_FALSE(tree_.topology().nodes.at(node).instance);
+    enter(node);
     ++branches;
+  }
+  void transform(std::uint32_t node) {
+    EXPECT_TRUE(tree_.topology().nodes.at(node).instance);
+    enter(node);
+    ++transforms;
   }
   void leaf(std::uint32_t node, std::uint32_t /*tests*/, std::uint32_t entries) {
     EXPECT_TRUE(tree_.topology().nodes.at(node).leaf);
@@ -138,8 +141,18 @@ class StepCheck {
   void pass(std::uint32_t /*record*/) {}
 
   std::uint64_t branches = 0;
+  std::uint64_t transforms = 0;
 
  private:
+  void enter(std::uint32_t node) {
+    const accel::TopologyNode& branch = tree_.topology().nodes.at(node);
+    EXPECT_FALSE(branch.leaf);
+    EXPECT_TRUE(reached_[node]);
+    for (std::uint32_t child = branch.first; child < branch.first + branch.count; ++child) {
+      reached_.at(child) = true;
+    }
+  }
+
   const TwoLevelBvh& tree_;
   std::vector<bool> reached_;
 };
@@ -180,6 +193,52 @@ TEST_P(InstancesOfEachNode, HitsAreThoseOfEveryPrimitiveOfEveryInstance) {
     }
   }
   EXPECT_GT(hits, 200U);
+}
+
+/// How many instances have boxes that the ray meets, each made larger by `margin` on each side.
+std::uint64_t boxes_met(const TwoLevelBvh& tree, const accel::Ray& ray, double margin) {
+  std::uint64_t met = 0;
+  for (const accel::Instance& instance : tree.instances()) {
+    double in = 0.0;
+    double out = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = (instance.box().lo[axis] - margin - ray.origin[axis]) / ray.direction[axis];
+      const double hi = (instance.box().hi[axis] + margin - ray.origin[axis]) / ray.direction[axis];
+      in = std::max(in, std::min(lo, hi));
+      out = std::min(out, std::max(lo, hi));
+    }
+    met += in <= out ? 1 : 0;
+  }
+  return met;
+}
+
+// A ray that hits nothing is brought into each instance whose box it meets, once. Boxes are kept a little
+// larger: of floats, by 2^-18 of the scene; of bytes, by a 255th of a node, which is no more than the scene.
+TEST_P(InstancesOfEachNode, ARayIsBroughtIntoTheInstancesThatItMeets) {
+  const scenes::Scene scene = random_scene(13, 0.5);
+  const TwoLevelBvh tree = build(scene);
+  const bool bytes = GetParam() == BvhNodeKind::six || GetParam() == BvhNodeKind::eight_quantised;
+  StepCheck steps(tree);
+  Random random(3);
+  std::uint64_t misses = 0;
+  std::uint64_t sure = 0;
+  for (int i = 0; i < 2000; ++i) {
+    accel::Ray ray;
+    ray.origin = random.point(20.0);
+    ray.direction = random.point(1.0);
+    steps.begin();
+    steps.transforms = 0;
+    if (!tree.closest(ray, steps).found()) {
+      const std::uint64_t least = boxes_met(tree, ray, 0.0);
+      const std::uint64_t most = boxes_met(tree, ray, bytes ? 0.2 : 0.001);
+      EXPECT_GE(steps.transforms, least);
+      EXPECT_LE(steps.transforms, most);
+      ++misses;
+      sure += least > 0 && least == most ? 1 : 0;
+    }
+  }
+  EXPECT_GT(misses, 200U);
+  EXPECT_GT(sure, 50U);
 }
 
 /// Some instances and half of the largest mesh are elsewhere.
@@ -274,6 +333,8 @@ TEST_P(InstancesOfEachNode, TheTopologyIsOneTreeForEachMeshBelowItsInstances) {
       }
     }
   }
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count_if(nodes, &accel::TopologyNode::instance)),
+            scene.instances.size());
   std::uint32_t roots_of_meshes = 0;
   std::uint32_t instances = 0;
   for (std::size_t n = 1; n < nodes.size(); ++n) {

@@ -79,6 +79,7 @@ struct Recorder {
   };
   std::vector<Visit> visits;
   void branch(std::uint32_t node) { visits.push_back({node, 0, 0, false}); }
+  void transform(std::uint32_t node) { branch(node); }
   void leaf(std::uint32_t node, std::uint32_t tests, std::uint32_t entries) {
     visits.push_back({node, tests, entries, true});
   }

@@ -12,7 +12,8 @@ TEST(Layout, RecordsDoNotOverlapAndSectionsAreAligned) {
   config.node_bytes = 10;
   config.record_alignment = 8;
   config.section_alignment = 256;
-  const RecordCounts counts = {7, 11, 5, 3, 2, 9};
+  config.transform_bytes = 21;
+  const RecordCounts counts = {7, 6, 11, 5, 3, 2, 9};
   const Layout layout(config, counts);
   Address last_end = 0;
   for (std::size_t k = 0; k < record_kinds; ++k) {
@@ -25,7 +26,13 @@ TEST(Layout, RecordsDoNotOverlapAndSectionsAreAligned) {
   }
   EXPECT_EQ(layout.address(RecordKind::node, 3), 48U) << "10 bytes aligned to 8 are 16 apart";
   EXPECT_EQ(layout.end(), last_end);
-  EXPECT_EQ(layout.database_bytes(), 7U * 16 + 11 * 4 + 5 * 48 + 3 * 64 + 2 * 4);
+  EXPECT_EQ(layout.database_bytes(), 7U * 16 + 6 * 24 + 11 * 4 + 5 * 48 + 3 * 64 + 2 * 4);
+}
+
+TEST(Layout, ASectionWithoutRecordsTakesNoRoom) {
+  const Layout layout(LayoutConfig{}, {512, 0, 1, 1, 1, 0, 1});
+  EXPECT_EQ(layout.base(RecordKind::list), 4096U);
+  EXPECT_EQ(layout.kind_at(4096), RecordKind::list);
 }
 
 TEST(Layout, QuadricsFollowTheTrianglesWithTheirOwnSize) {
@@ -33,7 +40,7 @@ TEST(Layout, QuadricsFollowTheTrianglesWithTheirOwnSize) {
   config.primitive_bytes = 45;
   config.quadric_bytes = 21;
   config.record_alignment = 4;
-  const RecordCounts counts = {1, 1, 5, 1, 0, 1};
+  const RecordCounts counts = {1, 0, 1, 5, 1, 0, 1};
   const Layout layout(config, counts, 2);
   const Address base = layout.base(RecordKind::primitive);
   for (std::uint64_t i = 0; i < 5; ++i) {
@@ -56,7 +63,7 @@ TEST(Layout, RefusesImpossibleSizes) {
   config = {};
   config.record_alignment = 3;
   EXPECT_THROW(Layout(config, RecordCounts{}), sim::UserError);
-  EXPECT_THROW(Layout(LayoutConfig{}, RecordCounts{~std::uint64_t{0}, 0, 0, 0, 0, 0}), sim::UserError);
+  EXPECT_THROW(Layout(LayoutConfig{}, RecordCounts{~std::uint64_t{0}, 0, 0, 0, 0, 0, 0}), sim::UserError);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ namespace {
 
 MachineConfig random_contexts(test::Random& random, const WorkLog& log, std::uint32_t most_nodes = 8) {
   MachineConfig machine = test::random_machine(random, most_nodes);
-  test::add_random_contexts(random, log.traversal < accel::Traversal::grid, machine);
+  const bool tree = log.traversal < accel::Traversal::grid || accel::walks_bvh(log.traversal);
+  test::add_random_contexts(random, tree, machine);
   return machine;
 }
 

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "instance_scene.h"
 #include "processors/program/log_rules.h"
 #include "processors/replay/replay.h"
-#include "program_scenes.h"
-#include "scenes/procedural.h"
+#include "simt_machines.h"
 #include "tests/support/random_machine.h"
 #include "tests/support/user_error.h"
 
@@ -23,45 +23,8 @@ namespace {
 
 using test::Built;
 
-/// A teapot with normals that stands in many places, over a floor.
-scenes::Scene many_teapots() {
-  scenes::Scene pot = scenes::make_procedural("teapot:2");
-  const auto pot_triangles = static_cast<std::uint32_t>(pot.triangles.size());
-  scenes::Scene scene;
-  scene.camera = pot.camera;
-  scene.lights = pot.lights;
-  scene.materials = pot.materials;
-  scene.materials[0].reflection = 0.3;
-  test::add_floor(scene, -1.0, 40.0, 0);
-  scene.normals.resize(scene.positions.size(), glm::dvec3(0.0));
-  const auto floor = static_cast<std::uint32_t>(scene.triangles.size());
-  const auto vertices = static_cast<std::uint32_t>(scene.positions.size());
-  pot.normals.resize(pot.positions.size(), glm::dvec3(0.0));
-  scene.positions.insert(scene.positions.end(), pot.positions.begin(), pot.positions.end());
-  scene.normals.insert(scene.normals.end(), pot.normals.begin(), pot.normals.end());
-  for (scenes::Triangle triangle : pot.triangles) {
-    for (std::uint32_t& vertex : triangle.vertex) {
-      vertex += vertices;
-    }
-    scene.triangles.push_back(triangle);
-  }
-  scene.meshes = {{0, floor}, {floor, pot_triangles}};
-  scene.instances.emplace_back();
-  for (int i = 0; i < 25; ++i) {
-    const glm::dvec3 axis(0.3, 0.2 * i, 1.0);
-    const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 0.7 * i, glm::normalize(axis)));
-    scenes::InstancePlace& place = scene.instances.emplace_back();
-    place.mesh = 1;
-    place.linear = turn * glm::dmat3(i % 3 == 0 ? -0.4 : 0.4);
-    place.linear[1] *= 1.0 + 0.05 * i;
-    place.shift = {2.5 * (i % 5 - 2), 2.5 * (i / 5 - 2), 0.2 * (i % 4)};
-  }
-  scenes::number_instances(scene);
-  return scene;
-}
-
 TEST(Instances, WhatIsSeenIsWhatCopiesShow) {
-  const scenes::Scene scene = many_teapots();
+  const scenes::Scene scene = test::many_teapots();
   const scenes::Scene copies = scenes::copied_instances(scene);
   const scenes::Bounds box = scenes::bounds_of(scene);
   const scenes::Bounds box_of_copies = scenes::bounds_of(copies);
@@ -123,9 +86,11 @@ TEST(Instances, MachinesOfEveryKindReplayThem) {
   RenderOptions options{.width = 24, .height = 20, .max_depth = 2};
   options.record = true;
   options.entered = true;
-  const Frame frame = Built(many_teapots(), "bvh").render(options);
-  const accel::Topology& tree = frame.log->topology;
-  EXPECT_TRUE(accel::has_instances(tree));
+  const Frame frame = Built(test::many_teapots(), "bvh").render(options);
+  EXPECT_TRUE(accel::has_instances(frame.log->topology));
+  EXPECT_TRUE(frame.log->has_entered());
+  const LogTotals totals = totals_of(*frame.log);
+  EXPECT_GT(totals.transforms, 1000U);
   for (const auto order :
        {memory::NodeOrder::breadth_first, memory::NodeOrder::depth_first, memory::NodeOrder::treelets}) {
     for (const auto kind : {machine::NodeKind::core, machine::NodeKind::simt}) {
@@ -134,14 +99,74 @@ TEST(Instances, MachinesOfEveryKindReplayThem) {
       config.kind = kind;
       config.layout.node_order = order;
       config.layout.node_bytes = 256;
+      config.cache.cache.line = 64;
       const replay::MachineResult result = replay::replay(*frame.log, config);  // checks the laws
-      EXPECT_GT(result.end, 0);
+      EXPECT_EQ(static_cast<std::uint64_t>(result.steps().transforms), totals.transforms);
+      if (kind == machine::NodeKind::core) {
+        // Each lies in a line by itself, and is read once at each visit.
+        const auto transform = static_cast<std::size_t>(memory::RecordKind::transform);
+        const cost::ReferenceCounts references = result.references();
+        EXPECT_EQ(static_cast<std::uint64_t>(references.hits[transform] + references.misses[transform]),
+                  totals.transforms);
+      }
     }
   }
 }
 
+// A ray that visits the root, an instance, the root of its mesh and a leaf with one triangle, for one pixel.
+WorkLog one_ray() {
+  WorkLog log;
+  log.traversal = accel::Traversal::bvh_two;
+  log.width = log.height = 1;
+  log.primitives = 1;
+  log.texture_begin = {0};
+  log.topology.nodes = {{1, 1, 1, false}, {2, 1, 2, false, true}, {3, 1, 3, false}, {0, 1, 4, true}};
+  log.topology.entries = {0};
+  log.rows.resize(1);
+  log.rows[0].begin = {0, 5};
+  log.rows[0].words = {camera_ray, make_word(Step::branch, 0), make_word(Step::transform, 1),
+                       make_word(Step::branch, 2), make_word(Step::leaf, 3)};
+  return log;
+}
+
+// Loads alone cost something, a cycle each, and each record lies in a line of its own, which misses once.
+TEST(Instances, AMachineByHandTakesTheSumOfItsParts) {
+  const WorkLog log = one_ray();
+  ASSERT_EQ(fault_of(log), "");
+  ASSERT_EQ(fault_of_order(log), "");
+  machine::MachineConfig config;
+  config.nodes = 1;
+  config.operations = {0, 0, 0, 0, 0, 0, 1, 0};
+  config.pixels = machine::Pixels::collected;
+  config.clock = sim::Clock::from_period(10);
+  config.layout.node_bytes = 32;
+  config.layout.transform_bytes = 60;
+  config.layout.record_alignment = config.cache.cache.line = 64;
+  config.layout.section_alignment = 64;
+  config.host.latency_cycles = 0;
+  config.interconnect.kind = memory::InterconnectKind::ideal;
+  config.interconnect.clock = sim::Clock::from_period(7);
+  config.interconnect.latency_cycles = 100;
+  const replay::MachineResult core = replay::replay(log, config);
+  // Words of two nodes, of the transform, of a list entry and of a triangle; five lines.
+  EXPECT_EQ(core.nodes[0].finish, (2 * 8 + 15 + 1 + 12) * 10 + 5 * core.unloaded_miss);
+  EXPECT_EQ(core.unloaded_miss, 700);
+  const auto misses = core.references().misses;
+  EXPECT_EQ(misses, (std::array<std::int64_t, memory::record_kinds>{2, 1, 1, 1, 0, 0, 0}));
+
+  // A lane that finds its lines where a hit finds them takes a hit for each record, and the tests' cycles.
+  machine::MachineConfig simt = test::one_warp(1, 3, 0);
+  simt.layout.transform_bytes = simt.layout.primitive_bytes = simt.cache.cache.line;
+  simt.rt.box_cycles = 5;
+  simt.rt.transform_cycles = 11;
+  simt.rt.triangle_cycles = 17;
+  const walk::SimtCounts counts = replay::replay(log, simt).simt.nodes.at(0);
+  EXPECT_EQ(counts.records, 5);
+  EXPECT_EQ(counts.unit_cycles, (3 + 5) + (3 + 11) + (3 + 5) + 3 + (3 + 17));
+}
+
 TEST(Instances, WhatCannotDealWithThemRefuses) {
-  const Built built(many_teapots(), "bvh");
+  const Built built(test::many_teapots(), "bvh");
   RenderOptions options{.width = 4, .height = 4};
   options.record = true;
   const Frame frame = built.render(options);

@@ -424,7 +424,7 @@ class NaiveContexts final : public sim::EventHandler {
   // ---- the cache
 
   int cache_of(memory::RecordKind kind) const {
-    constexpr std::array<int, 6> part = {0, 1, 2, 3, 3, 3};
+    constexpr std::array<int, 7> part = {0, 0, 1, 2, 3, 3, 3};
     return machine_.cache.organisation == processors::machine::CacheOrganisation::split
                ? part[static_cast<std::size_t>(kind)]
                : 0;
@@ -546,7 +546,7 @@ class NaiveContexts final : public sim::EventHandler {
     std::set<std::uint64_t> lines;
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
       const bool there = NaiveProgram::has_record(log_, child);
-      for (std::uint32_t byte = 0; there && byte < machine_.layout.node_bytes; ++byte) {
+      for (std::uint32_t byte = 0; there && byte < program_.node_bytes(child); ++byte) {
         lines.insert((program_.node_address(child) + byte) / unit_);
       }
     }

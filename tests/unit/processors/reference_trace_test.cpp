@@ -75,8 +75,8 @@ Hits simulate(const test::HeardReferences& trace, std::uint32_t node, const Node
       ++found.writes;
       return;
     }
-    const std::size_t part =
-        config.organisation == CacheOrganisation::split ? std::min<std::size_t>(kind, 3) : 0;
+    constexpr std::array<std::size_t, memory::record_kinds> parts = {0, 0, 1, 2, 3, 3, 3};
+    const std::size_t part = config.organisation == CacheOrganisation::split ? parts[kind] : 0;
     const bool hit = config.organisation != CacheOrganisation::none && caches[part].read(address);
     ++(hit ? found.hits : found.misses)[kind];
   });

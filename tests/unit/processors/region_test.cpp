@@ -251,12 +251,9 @@ RC_GTEST_PROP(SpacePlan, MemoryIsThatOfBruteForce, (std::uint64_t seed)) {
   machine.space.level = static_cast<std::uint32_t>(test::pick(random, 1, 6));
   machine.space.sample_step = static_cast<std::uint32_t>(test::pick(random, 1, 6));
   machine.layout.record_alignment = 1U << test::pick(random, 0, 4);
-  const memory::RecordCounts counts = {log.topology.nodes.size(),
-                                       log.topology.entries.size(),
-                                       log.primitives,
-                                       log.materials,
-                                       log.texture_begin.back(),
-                                       20};
+  const memory::RecordCounts counts = {
+      log.topology.nodes.size(), 0, log.topology.entries.size(), log.primitives, log.materials,
+      log.texture_begin.back(),  20};
   const memory::Layout layout(machine.layout, counts, log.quadrics.size());
   const SpacePlan plan = plan_space(log, machine, layout);
   const auto padded = [&](std::uint64_t bytes) {

@@ -145,12 +145,13 @@ sim::Ticks compute_of(const WorkLog& log, const MachineConfig& machine) {
   const LogTotals totals = totals_of(log);
   const std::array<std::int64_t, 3> tests = test::tests_by_kind(log);
   const auto n = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
-  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.leaf * n(totals.leaves) +
-                   ticks.lookup * n(totals.lookups) + ticks.test * tests[0] + ticks.sphere_test * tests[1] +
-                   ticks.cone_test * tests[2] + ticks.shade * n(totals.shades) +
-                   ticks.light * n(totals.lights) + ticks.texel * n(totals.texels) +
-                   ticks.any_hit * n(totals.any_hits) + ticks.cut * n(totals.cuts) +
-                   ticks.pass * n(totals.passes) + ticks.pixel * std::int64_t{log.width} * log.height;
+  sim::Ticks sum = ticks.branch * n(totals.branches) + ticks.transform * n(totals.transforms) +
+                   ticks.leaf * n(totals.leaves) + ticks.lookup * n(totals.lookups) + ticks.test * tests[0] +
+                   ticks.sphere_test * tests[1] + ticks.cone_test * tests[2] +
+                   ticks.shade * n(totals.shades) + ticks.light * n(totals.lights) +
+                   ticks.texel * n(totals.texels) + ticks.any_hit * n(totals.any_hits) +
+                   ticks.cut * n(totals.cuts) + ticks.pass * n(totals.passes) +
+                   ticks.pixel * std::int64_t{log.width} * log.height;
   for (std::size_t kind = 0; kind < ray_kinds; ++kind) {
     sum += ticks.ray[kind] * n(totals.rays[kind]);
   }
@@ -163,7 +164,8 @@ TEST(Replay, OneNodeIsComputePlusHitsPlusMissesTimesLatency) {
   test::Random random(11);
   for (int round = 0; round < 160; ++round) {
     const bool ideal = round < 60;
-    const WorkLog log = ideal ? test::random_log(random, 16, 16) : test::random_log(random, 1, 1, 2000);
+    const WorkLog log =
+        ideal ? test::random_log(random, 16, 16, 40, true) : test::random_log(random, 1, 1, 2000, true);
     MachineConfig machine = test::random_machine(random);
     machine.clusters = 1;
     machine.nodes = 1;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "instance_scene.h"
 #include "processors/program/work_log.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
@@ -66,13 +67,14 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
                        accel::BvhNodeKind node = accel::BvhNodeKind::two) {
     accel::StructureOptions structure;
     structure.bvh.node = node;
-    Built built(std::move(scene));
+    Built built(std::move(scene), kind);
     built.structure = accel::make_structure(kind, built.triangles, structure);
     options.width = width;
     options.height = height;
     options.record = true;
     options.entered = options.ray_words = entered;
-    options.meets = entered && kind == "bvh" && built.triangles->cut_outs() == nullptr;
+    options.meets = entered && kind == "bvh" && built.triangles->cut_outs() == nullptr &&
+                    built.triangles->instances().empty();
     if (options.max_depth == program::RenderOptions{}.max_depth) {
       options.max_depth = 3;
     }
@@ -95,6 +97,8 @@ inline std::vector<program::WorkLog> simt_logs(std::uint32_t width, std::uint32_
   add(with_holes(), "bvh", {.integrator = program::Integrator::path});
   add(with_holes(), "bvh", {.order = accel::WalkOrder::treelet_first, .treelet_records = 6},
       accel::BvhNodeKind::eight);
+  add(many_teapots(), "bvh", {}, accel::BvhNodeKind::four);
+  add(many_teapots(), "bvh", {.integrator = program::Integrator::path}, accel::BvhNodeKind::eight_quantised);
   scenes::Scene far = scenes::make_procedural("tetra:4");
   far.camera.eye = far.camera.at + 4.0 * (far.camera.eye - far.camera.at);
   add(far, "octree", {.voxel_cut = 1.0});

@@ -52,6 +52,7 @@ void expect_laws(const WorkLog& log, const MachineConfig& machine, const Machine
   ASSERT_EQ(static_cast<std::uint64_t>(all_rays(steps)), totals.all_rays());
   if (result.simt.counts().helps == 0) {  // lanes that help find hits in another order
     ASSERT_EQ(static_cast<std::uint64_t>(steps.branches), totals.branches);
+    ASSERT_EQ(static_cast<std::uint64_t>(steps.transforms), totals.transforms);
     ASSERT_EQ(static_cast<std::uint64_t>(steps.leaves), totals.leaves);
     ASSERT_EQ(static_cast<std::uint64_t>(steps.tests), totals.tests);
   }

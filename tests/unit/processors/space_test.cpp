@@ -40,7 +40,7 @@ MachineConfig random_space(test::Random& random) {
 RC_GTEST_PROP(Space, EqualsASecondModelInEveryCounter, (std::uint64_t seed)) {
   test::Random random(seed);
   for (int repeat = 0; repeat < 4; ++repeat) {
-    const WorkLog log = test::any_log(random);
+    const WorkLog log = test::any_log(random, false);
     MachineConfig machine = random_space(random);
     if (machine.cache.cache.replacement == memory::Replacement::random) {
       machine.cache.cache.replacement = memory::Replacement::fifo;

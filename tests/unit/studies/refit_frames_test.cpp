@@ -100,7 +100,7 @@ TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
           {"output", file.add_positions({2, 0, 0, 2, -1, 1})}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
   const std::string text = "[scene]\nsource = \"" + file.write_glb(directory.path(), "a.glb").string() +
-                           "\"\n" + small_bvh + "instances = \"kept\"\nbvh_children = \"2\"\n";
+                           "\"\n" + small_bvh + "instances = \"kept\"\nbvh_children = \"2\"\n[layout]\ntransform = \"48 B\"\n";
   const StudyOutput output = study(text);
   const Table& frames = table_of(output, "frames");
   const Table& refits = table_of(output, "refits");
@@ -111,6 +111,10 @@ TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
   EXPECT_EQ(number(refits, 3, "records"), 8);
   EXPECT_EQ(number(refits, 4, "records"), 7);
   EXPECT_EQ(number(refits, 5, "records"), 3);  // the instance, and two branches above it
+  // Node records of 64 bytes, and transforms of 48.
+  EXPECT_EQ(number(refits, 3, "written"), 4 * 64 + 4 * 48);
+  EXPECT_EQ(number(refits, 4, "written"), 3 * 64 + 4 * 48);
+  EXPECT_EQ(number(refits, 5, "written"), 2 * 64 + 48);
   EXPECT_EQ(number(refits, 4, "render"), number(refits, 3, "render"));
   EXPECT_EQ(csv_of(refits), csv_of(table_of(study(text), "refits")));
 }

@@ -13,7 +13,11 @@ std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
 }  // namespace
 
 Database::Database(const memory::LayoutConfig& config, const processors::program::WorkLog& log)
-    : config_(config), log_(log), record_of_(log.topology.nodes.size()) {
+    : config_(config),
+      log_(log),
+      record_of_(log.topology.nodes.size()),
+      placed_(record_of_.size()),
+      reached_(record_of_.size()) {
   std::uint64_t first = place(0);
   switch (config.node_order) {
     case memory::NodeOrder::breadth_first:
@@ -34,7 +38,8 @@ Database::Database(const memory::LayoutConfig& config, const processors::program
   const std::uint64_t record = config.record_alignment;
   const std::uint64_t section = config.section_alignment;
   const std::uint64_t texels = log.texture_begin.empty() ? 0 : log.texture_begin.back();
-  lists_ = round_up(records_ * round_up(config.node_bytes, record), section);
+  transforms_ = round_up(records_ * round_up(config.node_bytes, record), section);
+  lists_ = round_up(transforms_ + instances_ * round_up(config.transform_bytes, record), section);
   triangles_ = round_up(lists_ + log.topology.entries.size() * config.entry_bytes, section);
   quadrics_ = triangles_ + log.triangles() * round_up(config.primitive_bytes, record);
   materials_ = round_up(quadrics_ + log.quadrics.size() * round_up(config.quadric_bytes, record), section);
@@ -46,9 +51,14 @@ bool Database::has_record(std::uint32_t number) const {
   return !(accel::walks_bvh(log_.traversal) && log_.topology.nodes[number].leaf);
 }
 
-// Gives the node the next record if it has one; returns how many records that are.
+// Gives the node the next record if it has one and none yet; returns how many records among nodes that are.
 std::uint64_t Database::place(std::uint32_t number) {
-  if (!has_record(number)) {
+  if (!has_record(number) || placed_[number]) {
+    return 0;
+  }
+  placed_[number] = true;
+  if (log_.topology.nodes[number].instance) {
+    record_of_[number] = instances_++;
     return 0;
   }
   record_of_[number] = records_++;
@@ -85,7 +95,8 @@ void Database::place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_
     }
     std::uint64_t records = 0;
     for (std::uint32_t child = 0; child < node.count; ++child) {
-      records += has_record(node.first + child) ? 1 : 0;
+      const std::uint32_t number = node.first + child;
+      records += has_record(number) && !log_.topology.nodes[number].instance && !placed_[number] ? 1 : 0;
     }
     if (used > 0 && used + records > most) {
       break;
@@ -93,7 +104,10 @@ void Database::place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_
     used += records;
     place_children(treelet[next]);
     for (std::uint32_t child = 0; child < node.count; ++child) {
-      treelet.push_back(node.first + child);
+      if (const std::uint32_t number = node.first + child; !reached_[number]) {
+        reached_[number] = true;
+        treelet.push_back(number);
+      }
     }
   }
   for (; next < treelet.size(); ++next) {
@@ -106,6 +120,11 @@ void Database::place_treelet(std::uint32_t top, std::uint64_t most, std::uint64_
 Extent Database::node(std::uint32_t number) const {
   return {record_of_[number] * round_up(config_.node_bytes, config_.record_alignment),
           has_record(number) ? config_.node_bytes : 0};
+}
+
+Extent Database::transform(std::uint32_t instance) const {
+  return {transforms_ + record_of_[instance] * round_up(config_.transform_bytes, config_.record_alignment),
+          config_.transform_bytes};
 }
 
 Extent Database::list(const accel::TopologyNode& leaf, std::uint32_t count) const {

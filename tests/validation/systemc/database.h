@@ -21,8 +21,9 @@ class Database {
  public:
   Database(const memory::LayoutConfig& config, const processors::program::WorkLog& log);
 
-  /// Without bytes for a leaf that has no record.
+  /// Without bytes for a leaf that has no record; not for an instance.
   [[nodiscard]] Extent node(std::uint32_t number) const;
+  [[nodiscard]] Extent transform(std::uint32_t instance) const;
   /// The first `count` entries of a leaf's list.
   [[nodiscard]] Extent list(const accel::TopologyNode& leaf, std::uint32_t count) const;
   [[nodiscard]] Extent primitive(std::uint32_t id) const;
@@ -40,7 +41,11 @@ class Database {
   memory::LayoutConfig config_;
   const processors::program::WorkLog& log_;
   std::vector<std::uint32_t> record_of_;  // of each tree node
+  std::vector<bool> placed_;              // of each tree node, whether it has been
+  std::vector<bool> reached_;             // whether it is in a treelet's queue or was
   std::uint32_t records_ = 0;             // of tree nodes, placed so far
+  std::uint32_t instances_ = 0;           // placed so far
+  std::uint64_t transforms_ = 0;
   std::uint64_t lists_ = 0;
   std::uint64_t triangles_ = 0;
   std::uint64_t quadrics_ = 0;

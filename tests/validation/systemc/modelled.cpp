@@ -54,8 +54,8 @@ void refuse(const processors::machine::PacketConfig& packets, const processors::
 void refuse(const memory::LayoutConfig& layout, const memory::BankConfig& banks,
             const processors::machine::LocalMemoryConfig& local) {
   using memory::NodeOrder;
-  [[maybe_unused]] const auto& [node, entry, primitive, quadric, material, texel, pixel, record_alignment,
-                                section_alignment, order, leaf, treelet] = layout;
+  [[maybe_unused]] const auto& [node, transform, entry, primitive, quadric, material, texel, pixel,
+                                record_alignment, section_alignment, order, leaf, treelet] = layout;
   [[maybe_unused]] const auto& [count, interleave, clock, access_cycles, busy_cycles, shared_cache, dram] =
       banks;
   [[maybe_unused]] const auto& [local_clock, width, local_access_cycles, cycles_per_beat] = local;

@@ -121,6 +121,7 @@ bool Node::look_up(std::uint64_t line) {
   if (caches_.size() > 1) {
     switch (reading_.record) {
       case RecordKind::node:
+      case RecordKind::transform:
         cache = 0;
         break;
       case RecordKind::list:

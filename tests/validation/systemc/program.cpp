@@ -96,6 +96,11 @@ void Program::step(std::vector<Operation>& operations) {
       operations.push_back(compute(Activity::shading, ticks_.texel));
       operations.push_back(read(RecordKind::texel, database_.texel(operand, next_word())));
       return;
+    case Step::transform:
+      ++steps_.transforms;
+      operations.push_back(compute(Activity::traversal, ticks_.transform));
+      operations.push_back(read(RecordKind::transform, database_.transform(operand)));
+      return;
     case Step::cut:
       ++steps_.cuts;
       operations.push_back(compute(Activity::traversal, ticks_.cut));
