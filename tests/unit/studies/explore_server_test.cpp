@@ -260,6 +260,19 @@ TEST_F(Served, NoSlowRequest) {
   EXPECT_EQ(post("time", machine), 200);
 }
 
+// Browsers connect ahead of what they will ask for. Each of these would keep one of the server's threads for
+// two seconds, and the client waits five.
+TEST_F(Served, ConnectionsOnWhichNothingComesKeepNobodyWaiting) {
+  std::vector<int> connections(300);
+  for (int& connection : connections) {
+    connection = connected();
+  }
+  EXPECT_EQ(status(client_.Get(path("progress"))), 200);
+  for (const int connection : connections) {
+    close(connection);
+  }
+}
+
 // More connections than the server has threads, which would wait for requests for seconds.
 TEST_F(Served, TheEndWaitsForNobody) {
   std::vector<int> connections;
