@@ -37,6 +37,13 @@ MachineConfig machine_of(std::uint32_t clusters, std::uint32_t nodes) {
   return machine;
 }
 
+// Each node holds a part of the database, and a mesh connects them.
+MachineConfig on_mesh(std::uint32_t nodes) {
+  MachineConfig machine = machine_of(1, nodes);
+  machine.placement = processors::machine::Placement::distributed;
+  return machine;
+}
+
 struct Case {
   std::string name;
   MachineConfig machine;
@@ -47,7 +54,9 @@ std::vector<Case> cases() {
   return {{"16 clusters of 16 nodes", machine_of(16, 16)},
           {"64 clusters of 64 nodes", machine_of(64, 64), 1.6},
           {"256 clusters of 64 nodes", machine_of(256, 64), 1.6},
-          {"1,024 clusters of 64 nodes", machine_of(1024, 64), 1.6}};
+          {"1,024 clusters of 64 nodes", machine_of(1024, 64), 1.6},
+          {"16,384 nodes on a mesh", on_mesh(16384), 1.6},
+          {"65,536 nodes on a mesh", on_mesh(65536), 1.6}};
 }
 
 // Seconds as people wait, the least of several, and the result.

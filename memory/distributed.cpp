@@ -77,13 +77,17 @@ std::vector<BankStatistics> Distributed::bank_statistics() const {
   return banks;
 }
 
+const InterconnectStatistics& Distributed::statistics() const {
+  const NetworkStatistics& network = network_->statistics();
+  statistics_.busy = network.busy;
+  statistics_.data = network.data;
+  statistics_.held = network.busy - network.data;
+  statistics_.waits = network.waits;
+  return statistics_;
+}
+
 Delivery Distributed::send(std::uint32_t from, std::uint32_t to, std::uint32_t bytes) {
-  const Delivery delivery = network_->send(site_.engine.now(), from, to, bytes);
-  statistics_.busy = network_->statistics().busy;
-  statistics_.data = network_->statistics().data;
-  statistics_.held = statistics_.busy - statistics_.data;
-  statistics_.waits.add(delivery.wait);
-  return delivery;
+  return network_->send(site_.engine.now(), from, to, bytes);
 }
 
 void Distributed::post(Ticks time, std::uint32_t port, std::uint32_t sequence) {

@@ -75,7 +75,7 @@ class Distributed final : public Interconnect {
     }
     return read.served;
   }
-  [[nodiscard]] const InterconnectStatistics& statistics() const override { return statistics_; }
+  [[nodiscard]] const InterconnectStatistics& statistics() const override;
   [[nodiscard]] std::vector<BankStatistics> bank_statistics() const override;
   /// The mean over all homes, for node 0, rounded down.
   [[nodiscard]] sim::Ticks unloaded_read(std::uint32_t bytes) const override;
@@ -140,9 +140,9 @@ class Distributed final : public Interconnect {
   Beats beats_;
   std::unique_ptr<Network> network_;
   sim::LargeVector<Home> homes_;
-  sim::LargeVector<Read> reads_;    // of each port
-  std::vector<PortWrites> writes_;  // of each port
-  InterconnectStatistics statistics_;
+  sim::LargeVector<Read> reads_;               // of each port
+  std::vector<PortWrites> writes_;             // of each port
+  mutable InterconnectStatistics statistics_;  // what the network counts is entered when asked for
   DistributedStatistics distribution_;
 };
 

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "processors/cost/step_time.h"
 #include "processors/node/packet_nodes.h"
+#include "processors/node/work_ahead.h"
 #include "processors/walk/log_walker.h"
 #include "processors/walk/node_caches.h"
 #include "sim/prefetch.h"
@@ -18,7 +20,7 @@ namespace marti::processors::node {
 /// `Caches` is one of node_caches.h, `Walker` is LogWalker or StrippedWalker with them. The members are
 /// described in node_array.h.
 template <class Caches, class Walker = walk::LogWalker<Caches>>
-class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cursor> {
+class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cursor>, private NodeWork {
   using Base = PacketNodes<ImageNodes<Caches, Walker>, walk::Cursor>;
   friend Base;
   using Base::cursors_;
@@ -39,7 +41,11 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   ImageNodes(const walk::ReplayInput& input, sim::Engine& engine, Host& host, Caches caches)
       : Base(input, engine, host),
         walker_(input, std::move(caches)),
-        begun_(input.sample == nullptr ? 0 : input.config.all_nodes()) {}
+        begun_(input.sample == nullptr ? 0 : input.config.all_nodes()) {
+    if (input.helpers != 0) {
+      ahead_.emplace(input.helpers, input.config.all_nodes(), static_cast<NodeWork&>(*this));
+    }
+  }
 
   void start(std::uint64_t seed) override {
     for (const std::uint32_t node : Base::first_order(seed)) {
@@ -81,13 +87,24 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
     Base::reply(event.component(), port_of(event.component()));
   }
 
-  void run_all(sim::Engine& engine) override { engine.run_all(*this); }
+  void run_all(sim::Engine& engine) override {
+    if (!ahead_) {
+      engine.run_all(*this);
+      return;
+    }
+    const WorkAhead::Team team(*ahead_);
+    engine.run_all(*this);
+  }
   void run_before(sim::Engine& engine, sim::Ticks end) override { engine.run_before(*this, end); }
   void grant(std::uint32_t node, const std::optional<Grant>& grant) override { Base::begin(node, grant); }
 
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     interconnect_of(node).prepare(port_of(node));
+    if (ahead_) {  // the node's own data stay in the caches of who works for it
+      ahead_->prepare(node);
+      return;
+    }
     sim::prefetch_line(&cursors_[node]);
     if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
       prepare_reply(node);
@@ -95,6 +112,12 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   }
   void prepare_more(const sim::Event& event) override {
     const std::uint32_t node = event.component();
+    if (ahead_) {
+      if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory)) {
+        (void)interconnect_of(node).prepare_more(port_of(node));
+      }
+      return;
+    }
     if (event.event_class() == static_cast<std::uint8_t>(EventClass::reply)) {
       walker_.prefetch_steps(cursors_[node]);
     } else if (event.event_class() == static_cast<std::uint8_t>(EventClass::memory) &&
@@ -105,6 +128,9 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   }
 
   void finish() override {
+    for (std::uint32_t node = 0; ahead_ && node < statistics_.size(); ++node) {
+      spend(node, ahead_->of(node).reads);
+    }
     for (cost::NodeStatistics& node : statistics_) {
       cost::add_counted_time(walker_.ticks(), node.steps, node.references.all_hits(), node.time);
       node.time[static_cast<std::size_t>(cost::Activity::idle)] = end_ - node.finish;
@@ -175,25 +201,66 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
 
   // Lets a node work until it needs something shared.
   void run(std::uint32_t node) {
-    walk::Cursor& cursor = cursors_[node];
-    cost::NodeStatistics& statistics = statistics_[node];
-    const sim::Ticks from = cursor.time;
-    const walk::Stop stop = advance(node, cursor, statistics);
-    if (stop == walk::Stop::end) {
-      walker_.finish_pixel(node, cursor, statistics);
-    }
+    const sim::Ticks from = cursors_[node].time;
+    const walk::Stop stop = work(node);
     watch(node, walk::NodeState::working, from);
+    if (ahead_) {
+      tell(node, stop, ahead_->of(node));
+    }
+    go_on(node, stop, cursors_[node].time);
+  }
+  walk::Stop work(std::uint32_t node) {
+    walk::Cursor& cursor = cursors_[node];
+    const walk::Stop stop = advance(node, cursor, statistics_[node]);
+    if (stop == walk::Stop::end) {
+      walker_.finish_pixel(node, cursor, statistics_[node]);
+    }
+    return stop;
+  }
+  void go_on(std::uint32_t node, walk::Stop stop, sim::Ticks time) {
     static constexpr std::array classes = {EventClass::step, EventClass::read, EventClass::write};
-    post(classes[static_cast<std::size_t>(stop)], cursor.time, node);
+    post(classes[static_cast<std::size_t>(stop)], time, node);
+  }
+
+  void work_ahead(std::uint32_t node, Ahead& ahead) override {
+    walk::Cursor& cursor = cursors_[node];
+    cursor.time = 0;
+    walker_.pass(cursor);
+    tell(node, work(node), ahead);
+  }
+  void tell(std::uint32_t node, walk::Stop stop, Ahead& ahead) const {
+    const walk::Cursor& cursor = cursors_[node];
+    ahead.time = cursor.time;
+    ahead.stop = stop;
+    if (stop == walk::Stop::miss) {
+      ahead.address = walker_.missed_address(cursor);
+      ahead.bytes = walker_.missed_bytes(cursor);
+    }
+  }
+  void prepare_ahead(std::uint32_t node) const override {
+    sim::prefetch_line(&cursors_[node]);
+    sim::prefetch_line(&statistics_[node].references.misses);
+    walker_.prefetch(cursors_[node], statistics_[node]);
   }
 
   void read(std::uint32_t node) {
+    if (ahead_) {
+      const Ahead& ahead = ahead_->of(node);
+      const memory::Transaction missed = {port_of(node), ahead.address, ahead.bytes};
+      ahead_->begin(node);
+      Base::read_memory(node, missed);
+      return;
+    }
     const walk::Cursor& cursor = cursors_[node];
     Base::read_memory(node, {port_of(node), walker_.missed_address(cursor), walker_.missed_bytes(cursor)});
   }
 
   // Joined with the interconnect's code where that is known: see Bus::send_data.
   [[gnu::always_inline]] void read_done(std::uint32_t node, const memory::Service& service) {
+    if (ahead_) {
+      read_ahead_done(node, service);
+      return;
+    }
     spend(node, service);
     watch_read(node, service);
     walk::Cursor& cursor = cursors_[node];
@@ -202,9 +269,23 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
     walker_.pass(cursor);
     run(node);
   }
+  void read_ahead_done(std::uint32_t node, const memory::Service& service) {
+    ahead_->finish(node);
+    Ahead& ahead = ahead_->of(node);
+    ahead.reads.wait_interconnect += service.wait_interconnect;
+    ahead.reads.transfer += service.transfer;
+    ahead.reads.wait_bank += service.wait_bank;
+    ahead.reads.bank += service.bank;
+    const sim::Ticks time = sim::add_ticks(service.done, ahead.time);
+    if (ahead.stop != walk::Stop::miss) {
+      cursors_[node].time = time;
+    }
+    go_on(node, ahead.stop, time);
+  }
 
   Walker walker_;
   std::vector<std::uint64_t> begun_;  // with a sample: one past the packet that each node has begun last
+  std::optional<WorkAhead> ahead_;
 };
 
 }  // namespace marti::processors::node

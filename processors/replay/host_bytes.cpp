@@ -10,6 +10,8 @@
 #include "processors/node/build_result.h"
 #include "processors/node/dynamic_cursor.h"
 #include "processors/node/tree_copies.h"
+#include "processors/node/work_ahead.h"
+#include "processors/replay/replay.h"
 #include "processors/simt/lane_walk.h"
 #include "processors/simt/shared_rays.h"
 #include "processors/simt/warp.h"
@@ -51,6 +53,8 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
   // A node's counts, while it runs and in the result, and its cursor, event and place in the posting order.
   constexpr std::uint64_t bytes_a_node =
       2 * sizeof(cost::NodeStatistics) + sizeof(walk::Cursor) + sim::EventQueue::bytes_an_event + 8;
+  const bool many = config.all_nodes() >= ReplayOptions().fewest_nodes_of_threads;
+  const std::uint64_t ahead = many && node::why_not_ahead(config) == nullptr ? sizeof(node::Ahead) + 4 : 0;
   std::uint64_t tags = 0;
   for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
     tags += tag_bytes(first.cache);
@@ -102,7 +106,7 @@ std::uint64_t host_bytes(const machine::MachineConfig& machine, std::uint32_t wi
       sim::EventQueue::bytes_of_days(std::size_t{config.all_nodes()} * config.ports_of_node());
   return homes + events +
          config.all_nodes() *
-             (bytes_a_node + contexts + warps + config.write_buffer * sizeof(sim::Ticks) + tags);
+             (bytes_a_node + ahead + contexts + warps + config.write_buffer * sizeof(sim::Ticks) + tags);
 }
 
 std::uint64_t host_bytes(const program::WorkLog& log, const machine::MachineConfig& config) {

@@ -15,6 +15,7 @@
 #include "processors/replay/replay_parts.h"
 #include "processors/walk/kept_visits.h"
 #include "sim/engine.h"
+#include "sim/wait_until.h"
 
 namespace marti::processors::replay {
 
@@ -65,23 +66,11 @@ class Team {
       begin(workers);
     }
     share_(0, workers);
-    wait_until([this] { return working_.load(std::memory_order_acquire) == 0; },
+    sim::wait_until([this] { return working_.load(std::memory_order_acquire) == 0; },
                [] { std::this_thread::yield(); });
   }
 
  private:
-  // Workers come within microseconds if they are not interrupted, so they look out for each other for some
-  // time before they give their processors away.
-  template <class Ready, class GiveAway>
-  static void wait_until(const Ready& ready, const GiveAway& give_away) {
-    constexpr int most_looks = 1000;
-    for (int looks = 0; !ready(); ++looks) {
-      if (looks >= most_looks) {
-        give_away();
-      }
-    }
-  }
-
   // Has the others do their shares, or end if there are no workers.
   void begin(unsigned workers) {
     workers_ = workers;
@@ -91,7 +80,7 @@ class Team {
   }
   void help(unsigned worker) {
     for (std::uint32_t number = 0;; ++number) {
-      wait_until([&] { return number_.load(std::memory_order_acquire) != number; },
+      sim::wait_until([&] { return number_.load(std::memory_order_acquire) != number; },
                  [&] { number_.wait(number, std::memory_order_acquire); });
       if (workers_ == 0) {
         return;
@@ -357,7 +346,7 @@ class MachineParts {
 
 }  // namespace
 
-const char* why_one_thread(const machine::MachineConfig& config, std::uint32_t fewest_nodes) {
+const char* why_no_parts(const machine::MachineConfig& config, std::uint32_t fewest_nodes) {
   return config.scheme != machine::Scheme::image ? "rays move between nodes"
          : config.clusters == 1                  ? "its nodes share a memory or a network"
          : window_of(config) == 0                ? "the host answers at once"
@@ -373,7 +362,7 @@ std::optional<Division> division_of(const walk::ReplayInput& input, unsigned thr
   constexpr unsigned parts_a_thread = 8;
   const unsigned wanted = parts != 0 ? parts : threads < 2 ? 1 : parts_a_thread * threads;
   const unsigned used = std::min(wanted, input.config.clusters);
-  if (used < 2 || why_one_thread(input.config, fewest_nodes) != nullptr || !node::can_be_parts(input)) {
+  if (used < 2 || why_no_parts(input.config, fewest_nodes) != nullptr || !node::can_be_parts(input)) {
     return std::nullopt;
   }
   return Division{used, std::min(threads, used), window_of(input.config)};

@@ -28,14 +28,14 @@ struct Division {
 };
 
 /// The division of a machine among so many threads, into so many parts (0: as many as pay); std::nullopt
-/// where it is not divided, because why_one_thread() gives a reason or its nodes are walked by code that
+/// where it is not divided, because why_no_parts() gives a reason or its nodes are walked by code that
 /// cannot be (node::can_be_parts).
 [[nodiscard]] std::optional<Division> division_of(const walk::ReplayInput& input, unsigned threads,
                                                   unsigned parts, std::uint32_t fewest_nodes);
 
-/// Why one thread times a machine of this configuration, however many there are; null where several may.
+/// Why a machine of this configuration is not divided, however many threads there are; null where it may be.
 /// `fewest_nodes`: with fewer there are too few events in a window to pay for the threads to meet at its end.
-[[nodiscard]] const char* why_one_thread(const machine::MachineConfig& config, std::uint32_t fewest_nodes);
+[[nodiscard]] const char* why_no_parts(const machine::MachineConfig& config, std::uint32_t fewest_nodes);
 
 /// Times the machine in parts. `input` and `host` are those of the whole machine. What the host and the
 /// checks add to the result is left to the caller.

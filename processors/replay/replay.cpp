@@ -6,6 +6,7 @@
 
 #include "processors/machine/packets.h"
 #include "processors/node/node_array.h"
+#include "processors/node/work_ahead.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/bounds.h"
 #include "processors/replay/energy_counts.h"
@@ -61,6 +62,15 @@ walk::LeftOut leave_out(const ReplayOptions& options, walk::ReplayInput& input) 
     left.read_events = true;
   }
   return left;
+}
+
+// How many threads do work of nodes that wait for memory.
+unsigned helpers_of(const walk::ReplayInput& input, const ReplayOptions& options) {
+  const bool plain = input.observer == nullptr && input.sample == nullptr && !input.step_by_step &&
+                     !input.with_contexts && node::why_not_ahead(input.config) == nullptr;
+  return plain && options.threads > 1 && input.config.all_nodes() >= options.fewest_nodes_of_threads
+             ? options.threads - 1
+             : 0;
 }
 
 std::uint64_t pixels_of(const machine::PacketList& packets, const program::WorkLog& log,
@@ -158,12 +168,13 @@ MachineResult replay_contexts(const program::WorkLog& log, const machine::Machin
     check_bounds(config, result);
   };
   if (const auto division =
-          division_of(input, options.threads, options.parts, options.fewest_nodes_of_parts)) {
+          division_of(input, options.threads, options.parts, options.fewest_nodes_of_threads)) {
     MachineResult result = replay_parts(input, host, *division, options.start_seed);
     complete(result);
     check(result);
     return result;
   }
+  input.helpers = helpers_of(input, options);
   const std::unique_ptr<node::NodeArray> nodes = config.kind == machine::NodeKind::simt
                                                      ? simt::make_simt_nodes(input, engine, host)
                                                      : node::make_node_array(input, engine, host);
@@ -296,6 +307,14 @@ MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& 
   complete(result);
   check_records(log, config, result);
   return result;
+}
+
+const char* why_one_thread(const machine::MachineConfig& config, std::uint32_t fewest_nodes) {
+  if (why_no_parts(config, fewest_nodes) == nullptr) {
+    return nullptr;
+  }
+  const char* const why = node::why_not_ahead(config);
+  return why == nullptr && config.all_nodes() < fewest_nodes ? "it has few nodes" : why;
 }
 
 void work_out_energy(const program::WorkLog& log, const machine::MachineConfig& config,

@@ -123,10 +123,11 @@ struct ReplayOptions {
   /// Null: nobody asks for intervals; else the replay is one step by step. Same result. `observer` must be
   /// there; not with `stripped` or `sample`.
   const Intervals* intervals = nullptr;
-  /// How many threads may time the machine, in parts, if it has so many nodes (machine_parts.h). Same result.
+  /// How many threads may time the machine, if it has so many nodes: in parts (machine_parts.h), or some of
+  /// them ahead of one (node/work_ahead.h). Same result.
   unsigned threads = 1;
   unsigned parts = 0;  ///< 0: as many as pay
-  std::uint32_t fewest_nodes_of_parts = 1024;
+  std::uint32_t fewest_nodes_of_threads = 1024;
   /// Counts each packet that is handed out; after its stop() the replay throws sim::Stopped at the next one.
   /// Null: nobody waits. Same result.
   sim::WorkMeter* meter = nullptr;
@@ -137,6 +138,9 @@ struct ReplayOptions {
 /// Throws UserError for a machine that cannot be built or a time that does not fit.
 [[nodiscard]] MachineResult replay(const program::WorkLog& log, const machine::MachineConfig& config,
                                    const ReplayOptions& options = {});
+
+/// Why one thread times such a machine, however many there may be; null where several do.
+[[nodiscard]] const char* why_one_thread(const machine::MachineConfig& config, std::uint32_t fewest_nodes);
 
 /// Sets the energy of the result to that of `config`, which may differ in figures of energy from the machine
 /// that was replayed. Throws UserError when it does not fit.

@@ -6,9 +6,6 @@
 
 namespace marti::processors::walk {
 
-namespace {
-
-// Why the nodes of this machine are walked by code that cannot leave anything out; null when they are not.
 const char* why_other_nodes(const machine::MachineConfig& config) {
   if (config.scheme != machine::Scheme::image) {
     return "rays move between nodes";
@@ -24,8 +21,6 @@ const char* why_other_nodes(const machine::MachineConfig& config) {
   }
   return nullptr;
 }
-
-}  // namespace
 
 std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes) {
   memory::Address end = 0;

@@ -20,15 +20,18 @@ struct LeftOut {
   bool read_events = false;  ///< an event for each read
 };
 
+/// Why nodes of this machine are not the plain ones, of the image scheme, with one context, a given tree, and
+/// without prefetches and detailed counts; null when they are.
+[[nodiscard]] const char* why_other_nodes(const machine::MachineConfig& config);
+
 /// Number of lines of the database, from line 0 on, that the machine's caches may be asked for.
 [[nodiscard]] std::uint64_t lines_of(const memory::Layout& layout, std::uint32_t line_bytes);
 
-/// Why tags must be looked up on this machine; null when they need not. Only nodes of the image scheme with
-/// one context, a given tree and a unified cache, without detailed counts, can do without.
+/// Why tags must be looked up on this machine; null when they need not. Only plain nodes with a unified cache
+/// can do without.
 [[nodiscard]] const char* why_lookups(const machine::MachineConfig& config, const memory::Layout& layout);
 
-/// Why reads must be events on this machine; null when they need not. Only the nodes named at
-/// why_lookups() can do without.
+/// Why reads must be events on this machine; null when they need not. Only plain nodes can do without.
 [[nodiscard]] const char* why_read_events(const machine::MachineConfig& config);
 
 }  // namespace marti::processors::walk

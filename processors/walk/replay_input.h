@@ -63,12 +63,15 @@ struct ReplayInput {
   KeptVisits* visits = nullptr;
   /// Null: the nodes are those of the whole machine.
   MachinePart* part = nullptr;
+  /// Threads beside the calling one that may do what nodes do while they wait (node/work_ahead.h).
+  unsigned helpers = 0;
 
   /// All this for another machine.
   [[nodiscard]] ReplayInput with_config(const machine::MachineConfig& other) const {
     return {log,         other,        layout,    packets,  node_rank,     step_by_step,
             tree,        report_built, observer,  stripped, with_contexts, sample,
-            all_packets, line_set,     own_reads, causes,   visits,        part};
+            all_packets, line_set,     own_reads, causes,   visits,        part,
+            helpers};
   }
 };
 

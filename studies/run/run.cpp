@@ -10,7 +10,7 @@
 #include "processors/machine/packets.h"
 #include "processors/path/path_recorder.h"
 #include "processors/replay/host_bytes.h"
-#include "processors/replay/machine_parts.h"
+#include "processors/replay/replay.h"
 #include "processors/walk/stripped_log.h"
 #include "sim/config_errors.h"
 #include "studies/host/image_file.h"
@@ -201,7 +201,7 @@ std::shared_ptr<const processors::walk::StrippedLog> strip_for_both(
 // What is told while the machine and one node are timed. Only of a machine that takes long it is said why one
 // thread times it.
 std::string timing_of(const processors::machine::MachineConfig& machine) {
-  const std::uint32_t many_nodes = processors::replay::ReplayOptions().fewest_nodes_of_parts;
+  const std::uint32_t many_nodes = processors::replay::ReplayOptions().fewest_nodes_of_threads;
   const char* const why = processors::replay::why_one_thread(machine, many_nodes);
   return "timing the machine and one node" + (machine.all_nodes() < many_nodes || why == nullptr
                                                   ? std::string()

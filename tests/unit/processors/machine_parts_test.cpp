@@ -32,7 +32,7 @@ MachineConfig clustered_machine(test::Random& random) {
 MachineResult in_parts(const program::WorkLog& log, const MachineConfig& machine, unsigned parts,
                        ReplayOptions options = {}) {
   options.parts = parts;
-  options.fewest_nodes_of_parts = 0;
+  options.fewest_nodes_of_threads = 0;
   return replay::replay(log, machine, options);
 }
 
@@ -55,7 +55,7 @@ RC_GTEST_PROP(MachineParts, HaveTheResultOfOneThread, (std::uint64_t seed)) {
   RC_ASSERT(alone.copies == together.copies);
   RC_ASSERT(alone.host.requests == together.host.requests);
   RC_ASSERT(alone.host.busy == together.host.busy);
-  RC_CLASSIFY(why_one_thread(machine, 0) == nullptr);
+  RC_CLASSIFY(why_no_parts(machine, 0) == nullptr);
   RC_CLASSIFY(machine.host.assignment == Assignment::dynamic);
 }
 
@@ -82,20 +82,20 @@ TEST(MachineParts, AreThoseOfMachinesWithClustersAndAHostThatTakesTime) {
   MachineConfig machine;
   machine.clusters = 4;
   machine.nodes = 8;
-  EXPECT_EQ(why_one_thread(machine, 32), nullptr);
-  EXPECT_STREQ(why_one_thread(machine, 33), "it has few nodes");
+  EXPECT_EQ(why_no_parts(machine, 32), nullptr);
+  EXPECT_STREQ(why_no_parts(machine, 33), "it has few nodes");
   machine.host.latency_cycles = 0;
-  EXPECT_STREQ(why_one_thread(machine, 0), "the host answers at once");
+  EXPECT_STREQ(why_no_parts(machine, 0), "the host answers at once");
   machine.host.assignment = Assignment::interleaved;
-  EXPECT_EQ(why_one_thread(machine, 0), nullptr);
+  EXPECT_EQ(why_no_parts(machine, 0), nullptr);
   machine.cache.cache.replacement = memory::Replacement::random;
-  EXPECT_STREQ(why_one_thread(machine, 0), "its caches replace lines at random");
+  EXPECT_STREQ(why_no_parts(machine, 0), "its caches replace lines at random");
   machine.cache.cache.replacement = memory::Replacement::lru;
   machine.clusters = 1;
-  EXPECT_STREQ(why_one_thread(machine, 0), "its nodes share a memory or a network");
+  EXPECT_STREQ(why_no_parts(machine, 0), "its nodes share a memory or a network");
   machine.clusters = 4;
   machine.scheme = Scheme::pipeline;
-  EXPECT_STREQ(why_one_thread(machine, 0), "rays move between nodes");
+  EXPECT_STREQ(why_no_parts(machine, 0), "rays move between nodes");
 }
 
 // Stopping the meter ends all threads.
