@@ -67,7 +67,7 @@ class Team {
     }
     share_(0, workers);
     sim::wait_until([this] { return working_.load(std::memory_order_acquire) == 0; },
-               [] { std::this_thread::yield(); });
+                    [] { std::this_thread::yield(); });
   }
 
  private:
@@ -81,7 +81,7 @@ class Team {
   void help(unsigned worker) {
     for (std::uint32_t number = 0;; ++number) {
       sim::wait_until([&] { return number_.load(std::memory_order_acquire) != number; },
-                 [&] { number_.wait(number, std::memory_order_acquire); });
+                      [&] { number_.wait(number, std::memory_order_acquire); });
       if (workers_ == 0) {
         return;
       }

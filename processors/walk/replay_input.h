@@ -68,10 +68,9 @@ struct ReplayInput {
 
   /// All this for another machine.
   [[nodiscard]] ReplayInput with_config(const machine::MachineConfig& other) const {
-    return {log,         other,        layout,    packets,  node_rank,     step_by_step,
-            tree,        report_built, observer,  stripped, with_contexts, sample,
-            all_packets, line_set,     own_reads, causes,   visits,        part,
-            helpers};
+    return {log,          other,    layout,   packets,       node_rank, step_by_step, tree,
+            report_built, observer, stripped, with_contexts, sample,    all_packets,  line_set,
+            own_reads,    causes,   visits,   part,          helpers};
   }
 };
 
