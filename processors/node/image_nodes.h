@@ -101,8 +101,13 @@ class ImageNodes final : public PacketNodes<ImageNodes<Caches, Walker>, walk::Cu
   void prepare(const sim::Event& event) override {
     const std::uint32_t node = event.component();
     interconnect_of(node).prepare(port_of(node));
-    if (ahead_) {  // the node's own data stay in the caches of who works for it
+    if (ahead_) {
       ahead_->prepare(node);
+      // While a node reads, its own data stay in the caches of who works for it.
+      if (event.event_class() == static_cast<std::uint8_t>(EventClass::write) ||
+          event.event_class() == static_cast<std::uint8_t>(EventClass::dispatch)) {
+        prepare_ahead(node);
+      }
       return;
     }
     sim::prefetch_line(&cursors_[node]);
