@@ -34,7 +34,8 @@ void note_instances(Scene& scene) {
   }
   const InstancePlace& last = scene.instances.back();
   scene.notes.push_back("Instances are kept: " + std::to_string(scene.instances.size()) + " of " +
-                        std::to_string(scene.meshes.size()) + " meshes stand for " +
+                        std::to_string(scene.meshes.size()) +
+                        (scene.meshes.size() == 1 ? " mesh" : " meshes") + " stand for " +
                         std::to_string(last.first + scene.meshes[last.mesh].count) + " triangles.");
 }
 

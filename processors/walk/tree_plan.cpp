@@ -10,8 +10,6 @@
 
 namespace marti::processors::walk {
 
-namespace {}  // namespace
-
 TreePlan::TreePlan(const accel::Topology& topology, std::vector<BranchStart> starts,
                    const machine::MachineConfig& config)
     : topology_(topology),
