@@ -100,7 +100,8 @@ TEST(RefitFrames, OfKeptInstancesTheTopLevelAloneIsMade) {
           {"output", file.add_positions({2, 0, 0, 2, -1, 1})}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
   const std::string text = "[scene]\nsource = \"" + file.write_glb(directory.path(), "a.glb").string() +
-                           "\"\n" + small_bvh + "instances = \"kept\"\nbvh_children = \"2\"\n[layout]\ntransform = \"48 B\"\n";
+                           "\"\n" + small_bvh +
+                           "instances = \"kept\"\nbvh_children = \"2\"\n[layout]\ntransform = \"48 B\"\n";
   const StudyOutput output = study(text);
   const Table& frames = table_of(output, "frames");
   const Table& refits = table_of(output, "refits");
