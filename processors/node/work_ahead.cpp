@@ -69,23 +69,19 @@ class WorkAhead::Helper {
       }
       const Nodes nodes = rows_[seen & mask_];
       seen_.store(++seen, std::memory_order_release);
-      for (std::uint32_t i = 0; i < ahead; ++i) {
-        all_.prepare(nodes[i]);
-        all_.work_.prepare_ahead(nodes[i]);
-      }
-      for (std::uint32_t i = 0; i < row_nodes; ++i) {
-        if (i + ahead < row_nodes) {
-          all_.prepare(nodes[i + ahead]);
-          all_.work_.prepare_ahead(nodes[i + ahead]);
+      for (std::uint32_t i = 0; i < row_nodes + ahead; ++i) {
+        if (i < row_nodes) {
+          all_.prepare(nodes[i]);
+          all_.work_.prepare_ahead(nodes[i]);
         }
-        if (all_.take(nodes[i])) {
-          all_.help(nodes[i]);
+        if (i >= ahead && all_.take(nodes[i - ahead])) {
+          all_.help(nodes[i - ahead]);
         }
       }
     }
   }
 
-  static constexpr std::uint32_t ahead = 4;
+  static constexpr std::uint32_t ahead = 4;  // nodes prepared before their turn
   // Rows come some microseconds after each other, and waking a thread takes as long.
   static constexpr int patience = 100'000;
 
@@ -128,12 +124,9 @@ void WorkAhead::pass_on(std::size_t helper) {
 
 void WorkAhead::finish_late(std::uint32_t node) {
   Ahead& ahead = nodes_[node];
-  if (ahead.state_.load(std::memory_order_relaxed) == State::idle) {
-    work_.work_ahead(node, ahead);
-    return;
-  }
-  ++late_;
-  if (take(node)) {
+  const bool left_to_helpers = ahead.state_.load(std::memory_order_relaxed) != State::idle;
+  late_ += left_to_helpers ? 1 : 0;
+  if (!left_to_helpers || take(node)) {
     work_.work_ahead(node, ahead);
     return;
   }

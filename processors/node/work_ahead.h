@@ -108,8 +108,8 @@ class WorkAhead {
  private:
   using State = Ahead::State;
 
-  // Nodes are passed on to a helper in rows that fill a cache line, because each passing costs both threads
-  // some hundred cycles.
+  // Nodes are passed on to a helper several at a time, because each passing costs both threads some hundred
+  // cycles.
   static constexpr std::uint32_t row_nodes = 8;
   using Nodes = std::array<std::uint32_t, row_nodes>;
   struct Row {

@@ -9,15 +9,15 @@
 
 namespace marti::processors::walk {
 
-/// A record.
+/// The bytes that a record takes.
 struct RecordBytes {
   memory::Address at = 0;
   std::uint32_t bytes = 0;
 };
 
 /// Calls visit(line) for the lines of `count` records, in ascending order, until one call returns false;
-/// returns the last call's result, or true without records. record(i) is record i, whose address ascends, or
-/// none for a record that is left out. `shift`: a line has 2^shift bytes.
+/// returns the last call's result, or true without records. record_of(i) is record i, whose address ascends,
+/// or none for a record that is left out. `shift`: a line has 2^shift bytes.
 template <class RecordOf, class Visit>
 bool each_line_of(std::uint32_t count, unsigned shift, const RecordOf& record_of, const Visit& visit) {
   std::uint32_t from = 0;

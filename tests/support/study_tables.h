@@ -10,7 +10,7 @@
 
 namespace marti::test {
 
-/// Throws InternalError when there is none of that name.
+/// The table of this name. Throws InternalError when the output has no such table.
 inline const studies::tables::Table& table_of(const studies::tables::StudyOutput& output,
                                               std::string_view name) {
   const auto found = std::ranges::find(output.tables, name, &studies::tables::Table::name);
