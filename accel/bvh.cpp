@@ -186,6 +186,7 @@ void Bvh::leave(const Topology& whole, std::uint32_t nodes) {
 }
 
 void Bvh::number_nodes(const BvhBinaryTree& binary) {
+  work_ = binary.work;
   std::vector<std::uint32_t> of_binary = {0};
   boxes_.push_back(binary.nodes[0].box);
   std::array<std::uint32_t, 8> children{};

@@ -14,6 +14,7 @@
 #include "accel/bvh_options.h"
 #include "accel/bvh_ray.h"
 #include "accel/bvh_walk.h"
+#include "accel/bvh_work.h"
 #include "accel/mailbox.h"
 #include "accel/queries.h"
 #include "accel/ray.h"
@@ -58,6 +59,9 @@ class Bvh : public Queries<Bvh> {
   /// area of a box, as the records hold it, over that of the root. The cost is 0 for a scene without
   /// primitives and for one without area.
   [[nodiscard]] double sah_cost() const;
+
+  /// Of building the tree; none where it was refitted.
+  [[nodiscard]] const BvhWork& work() const { return work_; }
 
   /// Bytes of host memory for the walks' own records, without the topology.
   [[nodiscard]] std::uint64_t walk_bytes() const;
@@ -126,6 +130,7 @@ class Bvh : public Queries<Bvh> {
   RootFrame frame_;
   BvhSpace space_;
   Topology topology_;
+  BvhWork work_;
   std::vector<BvhBox> boxes_;         ///< by node number; only while the tree is built
   std::vector<std::uint32_t> first_;  ///< see BvhView
   std::vector<BvhPrimitive> primitives_;

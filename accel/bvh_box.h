@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include <glm/vec3.hpp>
 
@@ -36,40 +38,44 @@ struct BvhSpace {
   }
 };
 
-/// A box; the fourth lane is not used. Bounds are unions of bounds of primitives, without rounding, so they
-/// do not depend on the order in which they are united.
-struct alignas(16) BvhBox {
-  std::array<float, 4> lo{inf, inf, inf, inf};
-  std::array<float, 4> hi{-inf, -inf, -inf, -inf};
-
+/// A box of floats or of scalars that count; of floats there is a fourth lane, which is not used. Bounds are
+/// unions of bounds of primitives, without rounding, so they do not depend on the order in which they are
+/// united.
+template <class Float>
+struct alignas(16) BvhBoxOf {
+  static constexpr std::size_t lanes = std::is_same_v<Float, float> ? 4 : 3;
   static constexpr float inf = std::numeric_limits<float>::infinity();
+  using Point = std::array<Float, 4>;
 
-  void include(const BvhBox& other) {
-    for (std::size_t a = 0; a < 4; ++a) {
+  Point lo{inf, inf, inf, inf};
+  Point hi{-inf, -inf, -inf, -inf};
+
+  void include(const BvhBoxOf& other) {
+    for (std::size_t a = 0; a < lanes; ++a) {
       lo[a] = other.lo[a] < lo[a] ? other.lo[a] : lo[a];
       hi[a] = other.hi[a] > hi[a] ? other.hi[a] : hi[a];
     }
   }
-  void include(const std::array<float, 4>& point) {
-    for (std::size_t a = 0; a < 4; ++a) {
+  void include(const Point& point) {
+    for (std::size_t a = 0; a < lanes; ++a) {
       lo[a] = point[a] < lo[a] ? point[a] : lo[a];
       hi[a] = point[a] > hi[a] ? point[a] : hi[a];
     }
   }
   /// Twice the centre.
-  [[nodiscard]] std::array<float, 4> centroid() const {
-    return {lo[0] + hi[0], lo[1] + hi[1], lo[2] + hi[2], 0.0F};
-  }
+  [[nodiscard]] Point centroid() const { return {lo[0] + hi[0], lo[1] + hi[1], lo[2] + hi[2], 0.0F}; }
   /// Half the surface area; 0 for an empty box.
-  [[nodiscard]] float half_area() const {
-    const float x = hi[0] - lo[0];
-    const float y = hi[1] - lo[1];
-    const float z = hi[2] - lo[2];
-    return x < 0.0F ? 0.0F : x * y + y * z + z * x;
+  [[nodiscard]] Float half_area() const {
+    const Float x = hi[0] - lo[0];
+    const Float y = hi[1] - lo[1];
+    const Float z = hi[2] - lo[2];
+    return x < 0.0F ? Float(0.0F) : x * y + y * z + z * x;
   }
 };
+using BvhBox = BvhBoxOf<float>;
 
-/// The box of primitive `id`, rounded outwards.
+/// The box of primitive `id`, rounded outwards. Real: the scalar of the arithmetic, double or Counted.
+template <class Real = double>
 [[nodiscard]] BvhBox bvh_box_of(const BvhSpace& space, const TriangleSet& triangles, std::uint32_t id);
 
 }  // namespace marti::accel

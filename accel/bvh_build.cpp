@@ -5,8 +5,10 @@
 #include <bit>
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "accel/build_memory.h"
+#include "accel/bvh_bins.h"
 #include "accel/parallel.h"
 
 namespace marti::accel {
@@ -25,91 +27,36 @@ constexpr std::uint32_t most_binary_levels = 61;
 constexpr std::uint32_t large_node = 1U << 16;
 constexpr std::size_t references_at_once = 1U << 14;
 constexpr std::size_t nodes_in_a_piece = 64;
-// A node whose centroids lie closer together than this along an axis is not split across it.
-constexpr float least_extent = 0x1p-100F;
 
-struct Bin {
-  BvhBox box;
-  std::uint32_t count = 0;
-};
-
-// Bins along the three axes, and how a centroid finds its bin.
-struct Bins {
-  std::array<std::array<Bin, bvh_most_bins>, 3> of_axis;
-
-  void clear(std::uint32_t bins) {
-    for (std::array<Bin, bvh_most_bins>& row : of_axis) {
-      std::fill(row.begin(), row.begin() + bins, Bin{});
-    }
-  }
-  void merge(const Bins& other, std::uint32_t bins) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::uint32_t bin = 0; bin < bins; ++bin) {
-        of_axis[axis][bin].box.include(other.of_axis[axis][bin].box);
-        of_axis[axis][bin].count += other.of_axis[axis][bin].count;
-      }
-    }
-  }
-};
-
-struct Binning {
-  std::array<float, 3> from{};
-  std::array<float, 3> scale{};  ///< 0 on an axis without extent
-  std::uint32_t bins = 2;
-
-  // A short list takes fewer bins: it has fewer places where it can be split.
-  Binning(const BvhBox& centroids, std::uint32_t most, std::uint32_t count)
-      : bins(std::min(most, 2 * count)) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const float extent = centroids.hi[a] - centroids.lo[a];
-      from[a] = centroids.lo[a];
-      scale[a] = extent > least_extent ? static_cast<float>(bins) * 0.99999F / extent : 0.0F;
-    }
-  }
-  [[nodiscard]] std::uint32_t bin(const std::array<float, 4>& centroid, std::size_t axis) const {
-    return std::min(static_cast<std::uint32_t>((centroid[axis] - from[axis]) * scale[axis]), bins - 1);
-  }
-};
+using Binning = BvhBinning<float>;
+using Bins = BvhBins<float>;
 
 struct Split {
   bool leaf = false;       ///< see BvhBinaryNode
   std::uint32_t left = 0;  ///< number of primitives of the first child
   std::array<BvhBox, 2> boxes{};
+  bool binned = false;
+  std::uint32_t planes = 0;
+  std::uint32_t moved = 0;
 };
 
-struct Plane {
-  float cost = BvhBox::inf;  ///< sum over the children of area times primitives
-  std::size_t axis = 0;
-  std::uint32_t bin = 0;  ///< the last one of the first child
-};
-
-Plane best_plane(const Bins& bins, const Binning& binning) {
-  Plane best;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (binning.scale[axis] == 0.0F) {
-      continue;
+// Brings the references for which `first_child` holds before the others, and sets how many they are. Returns
+// how many were exchanged.
+template <class FirstChild>
+std::uint32_t part(Reference* begin, Reference* end, const FirstChild& first_child, std::uint32_t& firsts) {
+  const Reference* const all = begin;
+  std::uint32_t moved = 0;
+  for (;; ++begin, --end, moved += 2) {
+    begin = std::find_if_not(begin, end, first_child);
+    while (begin != end && !first_child(end[-1])) {
+      --end;
     }
-    const std::array<Bin, bvh_most_bins>& row = bins.of_axis[axis];
-    std::array<float, bvh_most_bins> above{};
-    BvhBox box;
-    std::uint32_t count = 0;
-    for (std::uint32_t bin = binning.bins - 1; bin > 0; --bin) {
-      box.include(row[bin].box);
-      count += row[bin].count;
-      above[bin - 1] = box.half_area() * static_cast<float>(count);
+    if (begin == end) {
+      firsts = static_cast<std::uint32_t>(begin - all);
+      return moved;
     }
-    box = {};
-    count = 0;
-    for (std::uint32_t bin = 0; bin + 1 < binning.bins; ++bin) {
-      box.include(row[bin].box);
-      count += row[bin].count;
-      const float cost = box.half_area() * static_cast<float>(count) + above[bin];
-      if (cost < best.cost) {
-        best = {cost, axis, bin};
-      }
-    }
+    std::swap(*begin, end[-1]);
   }
-  return best;
 }
 
 class BinaryBuilder {
@@ -173,11 +120,18 @@ class BinaryBuilder {
       const std::uint32_t from = node.begin;
       const std::uint32_t count = node.count;
       node.leaf = count <= 1 || split.leaf;
+      if (split.binned && !node.below_leaf) {
+        tree_.work.of_size(count) += {1, count, split.planes, node.leaf ? 0 : split.moved};
+      }
       if (count > 1) {
+        const bool below = node.leaf || node.below_leaf;
         node.first = static_cast<std::uint32_t>(tree_.nodes.size());
-        tree_.nodes.push_back({.box = split.boxes[0], .begin = from, .count = split.left});
         tree_.nodes.push_back(
-            {.box = split.boxes[1], .begin = from + split.left, .count = count - split.left});
+            {.box = split.boxes[0], .begin = from, .count = split.left, .below_leaf = below});
+        tree_.nodes.push_back({.box = split.boxes[1],
+                               .begin = from + split.left,
+                               .count = count - split.left,
+                               .below_leaf = below});
       }
     }
     return end;
@@ -193,20 +147,22 @@ class BinaryBuilder {
     const Binning binning(centroids_of(first, node.count, threads), options_.bins, node.count);
     const bool deep =
         level + static_cast<std::uint32_t>(std::bit_width(node.count - 1)) >= most_binary_levels;
-    Plane plane;
+    BvhPlane<float> plane;
     if (!deep) {
       sort_into_bins(first, node.count, binning, bins, threads);
-      plane = best_plane(bins, binning);
+      plane = bins.best_plane(binning);
+      split.binned = true;
+      split.planes = binning.planes();
     }
     if (node.count <= options_.max_objects) {
       const float area = node.box.half_area();
       split.leaf = !(plane.cost + area < area * static_cast<float>(node.count));
     }
     if (plane.cost < BvhBox::inf) {
-      Reference* const middle = std::partition(first, first + node.count, [&](const Reference& reference) {
+      const auto is_first = [&](const Reference& reference) {
         return binning.bin(reference.box.centroid(), plane.axis) <= plane.bin;
-      });
-      split.left = static_cast<std::uint32_t>(middle - first);
+      };
+      split.moved = part(first, first + node.count, is_first, split.left);
       for (std::uint32_t bin = 0; bin < binning.bins; ++bin) {
         split.boxes[bin <= plane.bin ? 0 : 1].include(bins.of_axis[plane.axis][bin].box);
       }
@@ -240,12 +196,7 @@ class BinaryBuilder {
     parallel_pieces(count, references_at_once, threads, [&](std::size_t begin, std::size_t end) {
       Bins& into = pieces.empty() ? bins : pieces[begin / references_at_once];
       for (std::size_t k = begin; k < end; ++k) {
-        const std::array<float, 4> centroid = first[k].box.centroid();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          Bin& bin = into.of_axis[axis][binning.bin(centroid, axis)];
-          bin.box.include(first[k].box);
-          ++bin.count;
-        }
+        into.add(first[k].box, binning);
       }
     });
     for (const Bins& piece : pieces) {

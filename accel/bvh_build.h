@@ -16,6 +16,7 @@
 
 #include "accel/bvh_box.h"
 #include "accel/bvh_options.h"
+#include "accel/bvh_work.h"
 #include "accel/triangles.h"
 
 namespace marti::accel {
@@ -27,12 +28,14 @@ struct BvhBinaryNode {
   std::uint32_t begin = 0;
   std::uint32_t count = 0;
   std::uint32_t first = 0;
-  bool leaf = true;  ///< its primitives cost less than its split, and a leaf can hold them
+  bool leaf = true;         ///< its primitives cost less than its split, and a leaf can hold them
+  bool below_leaf = false;  ///< below such a node
 };
 
 struct BvhBinaryTree {
   std::vector<BvhBinaryNode> nodes;    ///< node 0 is the root
   std::vector<std::uint32_t> entries;  ///< primitive ids
+  BvhWork work;
 };
 
 /// Over one primitive or more of a set. Throws UserError when the memory does not suffice.

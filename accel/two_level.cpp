@@ -35,19 +35,19 @@ BvhOptions of_top(BvhOptions options) {
   return options;
 }
 
-RootFrame frame_of(const TriangleSet& triangles, const PrimitiveRange& mesh) {
-  return make_frame(triangles.bounds(mesh), reach_of_meshes);
+std::vector<scenes::Bounds> mesh_boxes(const TriangleSet& triangles) {
+  std::vector<scenes::Bounds> boxes;
+  for (const PrimitiveRange& mesh : triangles.meshes()) {
+    sim::ensure(mesh.count > 0, "a mesh without primitives");
+    boxes.push_back(triangles.bounds(mesh));
+  }
+  return boxes;
 }
 
 }  // namespace
 
-std::shared_ptr<const TriangleSet> TwoLevelBvh::place_instances() {
+std::shared_ptr<const TriangleSet> TwoLevelBvh::place_instances(const std::vector<scenes::Bounds>& boxes) {
   const std::vector<PrimitiveRange>& meshes = triangles_->meshes();
-  std::vector<scenes::Bounds> boxes;
-  for (const PrimitiveRange& mesh : meshes) {
-    sim::ensure(mesh.count > 0, "a mesh without primitives");
-    boxes.push_back(triangles_->bounds(mesh));
-  }
   instances_.reserve(triangles_->instances().size());
   for (const scenes::InstancePlace& place : triangles_->instances()) {
     // Modulo 2^32, as ids are.
@@ -69,9 +69,11 @@ TwoLevelBvh TwoLevelBvh::build(std::shared_ptr<const TriangleSet> triangles, con
   TwoLevelBvh tree;
   tree.triangles_ = std::move(triangles);
   tree.options_ = options;
-  tree.top_ = Bvh::build(tree.place_instances(), of_top(options));
-  for (const PrimitiveRange& mesh : tree.triangles_->meshes()) {
-    tree.meshes_.push_back(Bvh::build(tree.triangles_, mesh, frame_of(*tree.triangles_, mesh), options));
+  const std::vector<scenes::Bounds> boxes = mesh_boxes(*tree.triangles_);
+  tree.top_ = Bvh::build(tree.place_instances(boxes), of_top(options));
+  for (std::size_t m = 0; m < boxes.size(); ++m) {
+    tree.meshes_.push_back(Bvh::build(tree.triangles_, tree.triangles_->meshes()[m],
+                                      make_frame(boxes[m], reach_of_meshes), options));
   }
   tree.join_trees();
   return tree;
@@ -93,12 +95,13 @@ TwoLevelBvh TwoLevelBvh::moved(std::shared_ptr<const TriangleSet> after, Update 
   tree.triangles_ = std::move(after);
   tree.options_ = options_;
   const std::vector<std::uint32_t> primitives = moved_primitives(*triangles_, *tree.triangles_);
-  const std::shared_ptr<const TriangleSet> boxes = tree.place_instances();
-  tree.top_ = update == Update::refit ? top_.refitted(boxes) : Bvh::build(boxes, of_top(options_));
+  const std::vector<scenes::Bounds> boxes = mesh_boxes(*tree.triangles_);
+  const std::shared_ptr<const TriangleSet> instances = tree.place_instances(boxes);
+  tree.top_ = update == Update::refit ? top_.refitted(instances) : Bvh::build(instances, of_top(options_));
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const std::uint32_t end =
         m + 1 < meshes.size() ? meshes_[m + 1].root() : static_cast<std::uint32_t>(topology_.nodes.size());
-    const RootFrame frame = frame_of(*tree.triangles_, meshes[m]);
+    const RootFrame frame = make_frame(boxes[m], reach_of_meshes);
     const auto next = std::ranges::lower_bound(primitives, meshes[m].first);
     const bool stays = next == primitives.end() || *next >= meshes[m].first + meshes[m].count;
     if (!stays && update == Update::rebuild) {
@@ -121,7 +124,9 @@ void TwoLevelBvh::join_trees() {
     deepest = std::max<unsigned>(deepest, node.level);
   }
   topology_.nodes = top.nodes;
+  work_ = top_.work();
   for (Bvh& mesh : meshes_) {
+    work_ += std::exchange(mesh.work_, {});
     mesh.join(topology_, deepest + 1);
   }
   instance_of_.resize(top.nodes.size());

@@ -65,6 +65,8 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   [[nodiscard]] const scenes::Bounds& bounds() const { return top_.bounds(); }
   [[nodiscard]] Traversal traversal() const { return top_.traversal(); }
   [[nodiscard]] const std::vector<Instance>& instances() const { return instances_; }
+  /// Of building the top level and the trees of meshes that were built for this tree, none of them refitted.
+  [[nodiscard]] const BvhWork& work() const { return work_; }
   /// Bytes of host memory for the walks' own records, without the topology.
   [[nodiscard]] std::uint64_t walk_bytes() const;
 
@@ -74,9 +76,10 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   friend bool test_bvh_leaf(const BvhTopView<Node>& view, std::uint32_t number, const BvhChild& leaf,
                             const RaySetup<Real>& setup, Best<Real>& best, Visitor& visitor);
   TwoLevelBvh() = default;
-  /// Makes the instances. Returns a triangle for each one's box, of which only the box is used.
-  [[nodiscard]] std::shared_ptr<const TriangleSet> place_instances();
-  /// Makes one topology of those of the top level and the meshes.
+  /// Makes the instances of meshes with these boxes. Returns a triangle for each one's box, of which only the
+  /// box is used.
+  [[nodiscard]] std::shared_ptr<const TriangleSet> place_instances(const std::vector<scenes::Bounds>& boxes);
+  /// Makes one topology of those of the top level and the meshes, and adds up their work.
   void join_trees();
 
   template <bool Any, class Real, class Visitor>
@@ -113,6 +116,7 @@ class TwoLevelBvh : public Queries<TwoLevelBvh> {
   std::vector<Instance> instances_;
   std::vector<std::uint32_t> instance_of_;  ///< by number of a node of the top level
   double far_rounding_ = 1.0;
+  BvhWork work_;
   Topology topology_;
 };
 

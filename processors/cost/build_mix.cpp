@@ -18,11 +18,8 @@ const BuildMixes& build_mixes() {
 BuildCycles build_cycles(const machine::OperationCycles& cycles, const RecordWords& words) {
   const BuildMixes& mixes = build_mixes();
   using sim::add_ticks;
-  const auto words_of = [&](std::int64_t count, std::int64_t each) {
-    return add_ticks(cycles.integer, sim::multiply_ticks(each, count));
-  };
-  const auto fetch = [&](std::int64_t count) { return words_of(count, cycles.load); };
-  const auto store = [&](std::int64_t count) { return words_of(count, cycles.store); };
+  const auto fetch = [&](std::int64_t words_of) { return fetch_record(cycles, words_of); };
+  const auto store = [&](std::int64_t words_of) { return store_record(cycles, words_of); };
   return {.lock = add_ticks(add_ticks(cycles.integer, cycles.load), cycles.store),
           .listed = price(mixes.listed, cycles, add_ticks(fetch(words.entry), fetch(words.primitive))),
           .overlap = price(mixes.overlap, cycles, 0),

@@ -84,11 +84,6 @@ constexpr std::array<Preset, 4> presets{{
       .store = 1}},
 }};
 
-/// Cycles to read one record: an integer operation for its address, then its words.
-std::int64_t read_record(const machine::OperationCycles& cycles, std::int64_t words) {
-  return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
-}
-
 }  // namespace
 
 std::int64_t price(const OperationMix& mix, const machine::OperationCycles& cycles, std::int64_t fixed) {
@@ -120,6 +115,14 @@ machine::OperationCycles cost_preset(std::string_view name) {
   throw sim::UserError("there is no cost preset \"" + std::string(name) + "\"; there are: " + known);
 }
 
+std::int64_t fetch_record(const machine::OperationCycles& cycles, std::int64_t words) {
+  return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.load, words));
+}
+
+std::int64_t store_record(const machine::OperationCycles& cycles, std::int64_t words) {
+  return sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.store, words));
+}
+
 StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords& words,
                        accel::Traversal traversal, bool mailboxes, program::Integrator integrator) {
   const OperationMixes& mixes = operation_mixes(traversal);
@@ -128,15 +131,15 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
   for (std::size_t kind = 0; kind < program::ray_kinds; ++kind) {
     steps.ray[kind] = price(mixes.ray[kind], cycles, 0);
   }
-  steps.branch = price(mixes.branch, cycles, read_record(cycles, words.node));
-  steps.transform = price(mixes.transform, cycles, read_record(cycles, words.transform));
-  steps.leaf = price(mixes.leaf, cycles, accel::walks_bvh(traversal) ? 0 : read_record(cycles, words.node));
-  const std::int64_t entry = read_record(cycles, words.entry);
-  const std::int64_t primitive = read_record(cycles, words.primitive);
-  const std::int64_t quadric = read_record(cycles, words.quadric);
+  steps.branch = price(mixes.branch, cycles, fetch_record(cycles, words.node));
+  steps.transform = price(mixes.transform, cycles, fetch_record(cycles, words.transform));
+  steps.leaf = price(mixes.leaf, cycles, accel::walks_bvh(traversal) ? 0 : fetch_record(cycles, words.node));
+  const std::int64_t entry = fetch_record(cycles, words.entry);
+  const std::int64_t primitive = fetch_record(cycles, words.primitive);
+  const std::int64_t quadric = fetch_record(cycles, words.quadric);
   // With mailboxes the look-up fetches the entry, and a test leaves the ray's number in the mailbox.
   if (mailboxes) {
-    steps.lookup = price(mixes.lookup, cycles, sim::add_ticks(entry, read_record(cycles, 1)));
+    steps.lookup = price(mixes.lookup, cycles, sim::add_ticks(entry, fetch_record(cycles, 1)));
   }
   const std::int64_t beside = mailboxes ? cycles.store : entry;
   steps.test = price(mixes.test, cycles, sim::add_ticks(beside, primitive));
@@ -152,14 +155,13 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
     any_hit = steps.ray[static_cast<std::size_t>(program::RayKind::diffuse)];
   }
   // The nearest primitive and the lights are in the node's registers or local store.
-  steps.shade = price(path ? mixes.path_shade : mixes.shade, cycles, read_record(cycles, words.material));
+  steps.shade = price(path ? mixes.path_shade : mixes.shade, cycles, fetch_record(cycles, words.material));
   steps.light = price(path ? mixes.path_light : mixes.light, cycles, 0);
-  steps.texel = price(mixes.texel, cycles, read_record(cycles, words.texel));
-  steps.any_hit = price(mixes.any_hit, cycles, read_record(cycles, words.material));
-  steps.cut = price(mixes.cut, cycles, read_record(cycles, words.node));
-  steps.pass = price(mixes.cut, cycles, read_record(cycles, words.material));
-  steps.pixel = price(mixes.pixel, cycles,
-                      sim::add_ticks(cycles.integer, sim::multiply_ticks(cycles.store, words.pixel)));
+  steps.texel = price(mixes.texel, cycles, fetch_record(cycles, words.texel));
+  steps.any_hit = price(mixes.any_hit, cycles, fetch_record(cycles, words.material));
+  steps.cut = price(mixes.cut, cycles, fetch_record(cycles, words.node));
+  steps.pass = price(mixes.cut, cycles, fetch_record(cycles, words.material));
+  steps.pixel = price(mixes.pixel, cycles, store_record(cycles, words.pixel));
   return steps;
 }
 

@@ -64,6 +64,11 @@ inline constexpr std::string_view default_cost_preset = "arm1176-2003";
 [[nodiscard]] std::int64_t price(const OperationMix& mix, const machine::OperationCycles& cycles,
                                  std::int64_t fixed);
 
+/// Cycles to fetch or to store a record of so many words: an integer operation for its address, then the
+/// words.
+[[nodiscard]] std::int64_t fetch_record(const machine::OperationCycles& cycles, std::int64_t words);
+[[nodiscard]] std::int64_t store_record(const machine::OperationCycles& cycles, std::int64_t words);
+
 /// Prices the measured operation mixes of a traversal and a program (operation_mix.h). Rounds each step to
 /// whole cycles, halves up. Mailboxes are words of the node's own memory, one for each primitive.
 [[nodiscard]] StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords& words,

@@ -7,10 +7,14 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
+#include "accel/bvh_bins.h"
+#include "accel/bvh_build.h"
 #include "accel/octree.h"
 #include "accel/octree_sort.h"
+#include "processors/cost/tree_work.h"
 #include "processors/node/branch_lists.h"
 #include "program_scenes.h"
 #include "scenes/procedural.h"
@@ -130,6 +134,78 @@ TEST(BuildMixes, TheTableIsWhatTheBuilderDoes) {
   EXPECT_EQ(measured.listed, listed);
   EXPECT_EQ(measured.overlaps, overlaps);
   EXPECT_EQ(measured.children, topology.nodes.size() - 1);
+}
+
+/// Means over the nodes of the binary tree that accel::BvhWork counts.
+BvhMixes measured_bvh_mixes(const accel::TriangleSet& set, const accel::BvhOptions& options) {
+  const accel::BvhSpace space(accel::make_frame(set));
+  const accel::BvhBinaryTree tree = accel::build_binary_bvh(set, {0, set.size()}, space, options);
+  using Box = accel::BvhBoxOf<accel::CountedFloat>;
+  accel::OperationCounts& counts = accel::operation_counts();
+  accel::OperationCounts bounded;
+  accel::OperationCounts sorted;
+  accel::OperationCounts planes;
+  accel::OperationCounts merged;
+  std::vector<Box> boxes;
+  Box all;
+  for (std::uint32_t id = 0; id < set.size(); ++id) {
+    accel::OperationCounts before = counts;
+    const accel::BvhBox box = accel::bvh_box_of<accel::Counted>(space, set, id);
+    bounded += counts - before;
+    boxes.emplace_back();
+    std::copy_n(box.lo.begin(), 3, boxes.back().lo.begin());
+    std::copy_n(box.hi.begin(), 3, boxes.back().hi.begin());
+    before = counts;
+    all.include(boxes.back());
+    merged += counts - before;
+  }
+  accel::BvhSplits splits;
+  accel::BvhBins<accel::CountedFloat> bins;
+  for (const accel::BvhBinaryNode& node : tree.nodes) {
+    if (node.count < 2 || node.below_leaf) {
+      continue;
+    }
+    const std::span<const std::uint32_t> listed = std::span(tree.entries).subspan(node.begin, node.count);
+    accel::OperationCounts before = counts;
+    Box centroids;
+    for (const std::uint32_t id : listed) {
+      centroids.include(boxes[id].centroid());
+    }
+    sorted += counts - before;
+    before = counts;
+    const accel::BvhBinning<accel::CountedFloat> binning(centroids, options.bins, node.count);
+    planes += counts - before;
+    bins.clear(binning.bins);
+    before = counts;
+    for (const std::uint32_t id : listed) {
+      bins.add(boxes[id], binning);
+    }
+    sorted += counts - before;
+    before = counts;
+    (void)bins.best_plane(binning);
+    planes += counts - before;
+    splits += {1, node.count, binning.planes(), 0};
+  }
+  accel::BvhSplits counted;
+  for (const accel::BvhSplits& size : tree.work.by_size) {
+    counted += size;
+  }
+  EXPECT_EQ(splits.references, counted.references);
+  EXPECT_EQ(splits.planes, counted.planes);
+  return {.bounded = mean_mix(bounded, set.size()),
+          .placed = {},
+          .sorted = mean_mix(sorted, splits.references),
+          .plane = mean_mix(planes, splits.planes),
+          .merged = mean_mix(merged, set.size())};
+}
+
+TEST(BvhMixes, TheTableIsWhatTheBuilderDoes) {
+  const BvhMixes measured =
+      measured_bvh_mixes(accel::TriangleSet(scenes::make_procedural("teapot:12")), {.threads = 1});
+  expect_close_mix("bounded", measured.bounded, bvh_mixes().bounded);
+  expect_close_mix("sorted", measured.sorted, bvh_mixes().sorted);
+  expect_close_mix("plane", measured.plane, bvh_mixes().plane);
+  expect_close_mix("merged", measured.merged, bvh_mixes().merged);
 }
 
 TEST(BuildMixes, UnitCostsAddUpByHand) {
