@@ -154,6 +154,7 @@ tables::Table refit_total_table(std::span<const RefitFrame> frames, bool instanc
        tables::integer_column("making", "ps", "least time of making the trees"),
        tables::integer_column("render", "ps", "time of the frames"),
        tables::integer_column("cycle", "ps", "both"),
+       tables::real_column("share", "fraction", "of making in the cycles, at least"),
        tables::real_column("saved", "fraction", "of the cycles with rebuilt trees"),
        tables::real_column("slower", "fraction", "by which the frames take longer than with rebuilt trees"),
        tables::count_column("records", "records that are written before the frames"),
@@ -161,8 +162,8 @@ tables::Table refit_total_table(std::span<const RefitFrame> frames, bool instanc
   const RefitFrame total = total_of(frames);
   for (const RefitWay way : ways_of(instances)) {
     const RefitOutcome& of = total.of(way);
-    table.add_row({name_of(way), of.making.all(), of.render, of.cycle(), saved(total, way),
-                   slower(total, way), of.records, of.bytes});
+    table.add_row({name_of(way), of.making.all(), of.render, of.cycle(), share_of_making(of),
+                   saved(total, way), slower(total, way), of.records, of.bytes});
   }
   return table;
 }
