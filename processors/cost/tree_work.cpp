@@ -1,6 +1,7 @@
 #include "processors/cost/tree_work.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "processors/cost/cost_model.h"
 #include "processors/cost/step_time.h"
@@ -48,17 +49,20 @@ std::int64_t all_cycles(const TreeWork& work, const machine::MachineConfig& conf
   return sum;
 }
 
-// Of all caches that are used by the nodes which make one copy of the tree.
+// Of all caches that are used by the nodes which make one copy of the tree. Of each cache no more than the
+// references of 2^32 primitives need.
 std::uint64_t cache_bytes(const machine::MachineConfig& config, std::uint64_t nodes) {
+  constexpr std::uint64_t most = std::uint64_t{bvh_reference_bytes} << 32U;
   std::uint64_t of_node = 0;
   for (const machine::FirstLevelCache& first : machine::first_level_caches(config.cache)) {
-    of_node += first.cache.size;
+    of_node += std::min(first.cache.size, most);
   }
+  const std::uint64_t second = std::min(config.l2.cache.size, most);
   switch (config.l2.sharing) {
     case machine::SecondLevel::private_caches:
-      return nodes * (of_node + config.l2.cache.size);
+      return nodes * (of_node + second);
     case machine::SecondLevel::shared:
-      return nodes * of_node + config.l2.cache.size;
+      return nodes * of_node + second;
     case machine::SecondLevel::none:
       break;
   }
@@ -81,8 +85,10 @@ void add_bytes(const TreeWork& work, const machine::MachineConfig& config, std::
   }
   // Of the nodes of one size together, as much of each as the caches hold need not be read or written.
   const std::uint64_t caches = cache_bytes(config, nodes);
-  for (const accel::BvhSplits& splits : work.build.by_size) {
-    const std::uint64_t held = splits.nodes * caches;
+  for (std::size_t size = 0; size < work.build.by_size.size(); ++size) {
+    const accel::BvhSplits& splits = work.build.by_size[size];
+    const std::uint64_t largest = std::uint64_t{bvh_reference_bytes} << size;
+    const std::uint64_t held = splits.nodes * std::min(caches, largest);
     const auto beyond = [&](std::uint64_t references) {
       const std::uint64_t bytes = references * bvh_reference_bytes;
       return bytes > held ? bytes - held : 0;
