@@ -122,6 +122,7 @@ class BinaryBuilder {
       node.leaf = count <= 1 || split.leaf;
       if (split.binned && !node.below_leaf) {
         tree_.work.of_size(count) += {1, count, split.planes, node.leaf ? 0 : split.moved};
+        tree_.work.levels = level;
       }
       if (count > 1) {
         const bool below = node.leaf || node.below_leaf;

@@ -32,6 +32,8 @@ struct BvhSplits {
 struct BvhWork {
   /// By the nodes' numbers of references: [k], if there is one, has those of 2^(k-1) to 2^k - 1.
   std::vector<BvhSplits> by_size;
+  /// Of the binary tree, down to the last of these nodes; of several trees, of the deepest.
+  std::uint32_t levels = 0;
 
   bool operator==(const BvhWork&) const = default;
   [[nodiscard]] BvhSplits& of_size(std::uint32_t references) {
@@ -44,6 +46,7 @@ struct BvhWork {
     for (std::size_t k = 0; k < other.by_size.size(); ++k) {
       by_size[k] += other.by_size[k];
     }
+    levels = std::max(levels, other.levels);
     return *this;
   }
 };

@@ -18,10 +18,30 @@ std::int64_t times(std::uint64_t count, std::int64_t each) {
 
 std::uint64_t ceil_divided(std::uint64_t count, std::uint64_t by) { return count / by + (count % by != 0); }
 
+// Words of a reference.
+std::int64_t reference_words(const machine::MachineConfig& config) {
+  return static_cast<std::int64_t>(ceil_divided(bvh_reference_bytes, config.word_bytes));
+}
+
+// To sort a reference.
+std::int64_t sorting_cycles(const machine::MachineConfig& config) {
+  return price(bvh_mixes().sorted, config.operations,
+               fetch_record(config.operations, reference_words(config)));
+}
+
+// On each level a reference has to be sorted before one of the next level can be, or a record be fitted after
+// one of the level below.
+std::int64_t following_cycles(const TreeWork& work, const machine::MachineConfig& config) {
+  const std::int64_t words = record_words(config).node;
+  const std::int64_t record =
+      add_ticks(fetch_record(config.operations, words), store_record(config.operations, words));
+  return std::max(times(work.build.levels, sorting_cycles(config)), times(work.levels, record));
+}
+
 std::int64_t all_cycles(const TreeWork& work, const machine::MachineConfig& config) {
   const machine::OperationCycles& cycles = config.operations;
   const RecordWords words = record_words(config);
-  const auto reference = static_cast<std::int64_t>(ceil_divided(bvh_reference_bytes, config.word_bytes));
+  const std::int64_t reference = reference_words(config);
   const BvhMixes& mixes = bvh_mixes();
   const auto fetch = [&](std::int64_t of) { return fetch_record(cycles, of); };
   const auto store = [&](std::int64_t of) { return store_record(cycles, of); };
@@ -33,7 +53,7 @@ std::int64_t all_cycles(const TreeWork& work, const machine::MachineConfig& conf
   add(work.quadrics, price(mixes.bounded, cycles, fetch(words.quadric)));
   add(work.instances, price(mixes.placed, cycles, add_ticks(fetch(words.transform), store(words.transform))));
   for (const accel::BvhSplits& splits : work.build.by_size) {
-    add(splits.references, price(mixes.sorted, cycles, fetch(reference)));
+    add(splits.references, sorting_cycles(config));
     add(splits.planes, price(mixes.plane, cycles, 0));
     add(splits.moved, add_ticks(fetch(reference), store(reference)));
   }
@@ -177,8 +197,10 @@ LeastTime least_time(const TreeWork& work, const machine::MachineConfig& config)
   const std::uint64_t at_once =
       config.kind == machine::NodeKind::simt ? std::uint64_t{config.simt.lanes} * config.simt.issue : 1;
   LeastTime least;
-  const auto cycles = static_cast<std::uint64_t>(all_cycles(work, config));
-  least.compute = config.clock.cycles(static_cast<std::int64_t>(ceil_divided(cycles, nodes * at_once)));
+  const std::uint64_t shared =
+      ceil_divided(static_cast<std::uint64_t>(all_cycles(work, config)), nodes * at_once);
+  least.compute =
+      config.clock.cycles(std::max(static_cast<std::int64_t>(shared), following_cycles(work, config)));
   add_bytes(work, config, nodes, least);
   least.memory = least_transfer(least.read, least.written, config);
   return least;

@@ -1,6 +1,7 @@
 // What it takes at least to have a bounding volume hierarchy before a frame begins: to build it as
 // accel/bvh_build.h does, or to fit its boxes anew. The program is one that all nodes of a cluster run
-// together, and nothing is lost by sharing it: no node waits for another one or for its memory.
+// together, and nothing is lost by sharing it: no node waits for another one or for its memory. One lane
+// works on a reference or a record, and on those of the next level after it.
 //
 // A roofline: Williams, Waterman, Patterson, "Roofline: an insightful visual performance model for multicore
 // architectures", CACM 52(4), 2009. The time is at least that of the operations, divided among all nodes and
@@ -49,13 +50,14 @@ struct TreeWork {
   std::uint64_t branches = 0;   ///< whose records are written
   std::uint64_t merged = 0;     ///< boxes merged with another one to fit those of nodes
   bool refits = false;          ///< records and lists are there, and are read
+  std::uint32_t levels = 0;     ///< with `refits`, most of these branches one above the other
 };
 
 struct LeastTime {
   std::uint64_t read = 0;     ///< bytes
   std::uint64_t written = 0;  ///< bytes
-  sim::Ticks compute = 0;     ///< for the operations
-  sim::Ticks memory = 0;      ///< for the bytes: least_transfer
+  sim::Ticks compute = 0;  ///< for the operations: shared by all, and one after the other from level to level
+  sim::Ticks memory = 0;   ///< for the bytes: least_transfer
 
   [[nodiscard]] sim::Ticks all() const { return compute > memory ? compute : memory; }
 };

@@ -86,15 +86,23 @@ std::string refit_answer(std::span<const RefitFrame> frames, bool instances) {
   const RefitFrame total = total_of(frames);
   const auto slowest = std::ranges::max_element(
       frames, {}, [](const RefitFrame& frame) { return slower(frame, RefitWay::refit); });
-  const auto records = [&](RefitWay way) { return static_cast<double>(total.of(way).records); };
-  return shortest_line(total, frames.size() - 1, instances) +
-         (records(RefitWay::rebuild) == 0.0
-              ? ""
-              : fmt::format(
-                    "Refitting writes {} of the records that rebuilding does, and frames take at most {} "
-                    "longer (frame {})\n",
-                    tables::rough_percent(records(RefitWay::refit) / records(RefitWay::rebuild)),
-                    tables::rough_percent(slower(*slowest, RefitWay::refit)), slowest->number));
+  const auto shorter = std::ranges::find_if(frames, [](const RefitFrame& frame) {
+    return frame.of(RefitWay::rebuild).cycle() < frame.of(RefitWay::refit).cycle();
+  });
+  std::string text = shortest_line(total, frames.size() - 1, instances);
+  if (const std::uint64_t all = total.of(RefitWay::rebuild).records; all > 0) {
+    text += fmt::format(
+        "Refitting writes {} of the records that rebuilding does, and frames take at most {} longer (frame "
+        "{})\n",
+        tables::rough_percent(static_cast<double>(total.of(RefitWay::refit).records) /
+                              static_cast<double>(all)),
+        tables::rough_percent(slower(*slowest, RefitWay::refit)), slowest->number);
+  }
+  if (shorter != frames.end()) {
+    text +=
+        fmt::format("Frame {} is the first whose cycle is shorter with the rebuilt tree\n", shorter->number);
+  }
+  return text;
 }
 
 tables::Table refit_frame_table(std::span<const RefitFrame> frames) {

@@ -41,7 +41,8 @@ struct RefitFrame {
 
 /// The first line of the report: which way has the shortest cycles, all frames but the first together, how
 /// much shorter than the next, and how many times its least time its trees may take without changing that.
-/// Then what refitting saves and costs. `instances`: they are kept, so that there is RefitWay::rebuild_top.
+/// Then what refitting saves and costs, and from which frame on it does not pay. `instances`: they are kept,
+/// so that there is RefitWay::rebuild_top.
 [[nodiscard]] std::string refit_answer(std::span<const RefitFrame> frames, bool instances);
 
 /// "frames": a row for each frame: what moved, hashes.

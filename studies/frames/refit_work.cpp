@@ -53,6 +53,22 @@ std::vector<bool> made_nodes(const InstancedTree& tree, const Moved& moved, Refi
   return made;
 }
 
+// By node: how many of the branches that are made lie one below the other, it among them.
+std::vector<std::uint32_t> branches_below(const accel::Topology& topology, const std::vector<bool>& made) {
+  std::vector<std::uint32_t> below(made.size());
+  for (std::size_t n = made.size(); n-- > 0;) {
+    const accel::TopologyNode& node = topology.nodes[n];
+    if (node.leaf || !made[n]) {
+      continue;
+    }
+    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
+      below[n] = std::max(below[n], below[child]);
+    }
+    below[n] += node.instance ? 0 : 1;
+  }
+  return below;
+}
+
 TreeWork work_of_nodes(const InstancedTree& tree, const Moved& moved, RefitWay way) {
   TreeWork work;
   work.refits = way == RefitWay::refit;
@@ -72,6 +88,7 @@ TreeWork work_of_nodes(const InstancedTree& tree, const Moved& moved, RefitWay w
     // No record holds the root's own box.
     work.merged += work.refits && n > 0 && node.count > 0 ? node.count - 1 : 0;
   }
+  work.levels = work.refits ? branches_below(tree.topology, made)[0] : 0;
   return work;
 }
 

@@ -92,6 +92,7 @@ class Recount {
     if (!below && levels < 61) {
       const std::uint32_t planes = planes_between(std::vector(begin, end), set_, bins_);
       work_.of_size(node.count) += {1, node.count, planes, node.leaf ? 0 : moved};
+      work_.levels = std::max(work_.levels, level);
     }
     std::partition(begin, end, is_first);
     visit(node.first, level + 1, below || node.leaf);
@@ -143,6 +144,7 @@ TEST(BvhWork, OfFewPrimitivesIsKnown) {
   // No plane separates equal ones: eight are cut into halves on three levels.
   const std::vector<glm::dvec3> equal(8, glm::dvec3(1.0));
   EXPECT_EQ(sum_of(build(triangles_at(equal), single).work), (BvhSplits{7, 24, 0, 0}));
+  EXPECT_EQ(build(triangles_at(equal), single).work.levels, 3U);
   // Where a leaf may list them all, only the root was looked at.
   const BvhOptions wide{.max_objects = 8, .threads = 1};
   EXPECT_EQ(sum_of(build(triangles_at(equal), wide).work), (BvhSplits{1, 8, 0, 0}));
@@ -193,6 +195,7 @@ TEST(BvhWork, OfKeptInstancesIsThatOfTheTreesThatWereBuilt) {
   all += of_mesh(0);
   all += of_mesh(1);
   EXPECT_EQ(sum_of(accel::TwoLevelBvh::build(after).work()), all);
+  EXPECT_GT(moved.work().levels, tree.moved(before, Update::rebuild).work().levels);
   // What was built before has been charged before.
   EXPECT_EQ(sum_of(moved.moved(after, Update::rebuild).work()), top);
   EXPECT_EQ(sum_of(moved.moved(before, Update::refit).work()), BvhSplits());

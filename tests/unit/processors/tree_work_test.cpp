@@ -96,6 +96,19 @@ TEST(TreeWork, NodesLanesAndClocksDivideTheTime) {
   EXPECT_EQ(least_time(some_build(), machine).compute, one);
 }
 
+TEST(TreeWork, LevelsFollowOneAnother) {
+  MachineConfig machine = plain_machine();
+  machine.nodes = most_nodes;
+  TreeWork work = some_build();
+  EXPECT_EQ(least_time(work, machine).compute, 1);
+  work.build.levels = 9;
+  EXPECT_EQ(least_time(work, machine).compute, 9 * (all(bvh_mixes().sorted) + 8));
+  work = {.branches = 9, .refits = true, .levels = 4};
+  EXPECT_EQ(least_time(work, machine).compute, 4 * (3 + 3));
+  machine.nodes = 1;
+  EXPECT_EQ(least_time(work, machine).compute, 9 * (3 + 3));
+}
+
 TEST(TreeWork, WhatCachesHoldNeedNotBeMoved) {
   MachineConfig machine = plain_machine();
   const std::uint64_t primitives = 190 * 48 + 10 * 40;

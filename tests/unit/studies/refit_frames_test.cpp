@@ -6,15 +6,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "accel/bvh.h"
 #include "processors/replay/replay.h"
+#include "scenes/procedural.h"
 #include "sim/config.h"
 #include "studies/frames/frames.h"
 #include "studies/frames/refit_tables.h"
+#include "studies/frames/refit_work.h"
 #include "studies/keys/machine_keys.h"
 #include "studies/run/functional_run.h"
 #include "studies/run/run_result.h"
@@ -119,6 +123,66 @@ TEST(RefitFrames, ATreeIsMadeFasterByAFasterClock) {
   }
 }
 
+// What a naive walk down the tree finds to be refitted; visit() returns how many such branches lie one below
+// another.
+struct NaiveRefit {
+  const accel::Topology& topology;
+  const std::vector<bool>& moved;
+  processors::cost::TreeWork work{};
+
+  [[nodiscard]] bool holds_moved(std::uint32_t number) const {
+    const accel::TopologyNode& node = topology.nodes[number];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      if (node.leaf ? moved[topology.entries[i]] : holds_moved(i)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  std::uint32_t visit(std::uint32_t number) {
+    if (!holds_moved(number)) {
+      return 0;
+    }
+    const accel::TopologyNode& node = topology.nodes[number];
+    work.merged += number == 0 ? 0 : node.count - 1;
+    if (node.leaf) {
+      work.triangles += node.count;
+      return 0;
+    }
+    ++work.branches;
+    std::uint32_t deepest = 0;
+    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
+      deepest = std::max(deepest, visit(child));
+    }
+    return deepest + 1;
+  }
+};
+
+TEST(RefitFrames, TheWorkIsThatOfANaiveWalk) {
+  const auto set = std::make_shared<const accel::TriangleSet>(scenes::make_procedural("teapot:3"));
+  for (const accel::BvhNodeKind kind : {accel::BvhNodeKind::two, accel::BvhNodeKind::eight}) {
+    const accel::Bvh tree = accel::Bvh::build(set, {.node = kind});
+    for (const std::uint32_t every : {1U, 7U, 200U}) {
+      Moved moved;
+      for (std::uint32_t id = 0; id < set->size(); ++id) {
+        moved.primitives.push_back(id % every == 0);
+      }
+      NaiveRefit naive{tree.topology(), moved.primitives};
+      const std::uint32_t levels = naive.visit(0);
+      const processors::cost::TreeWork work = work_of(tree, moved, RefitWay::refit);
+      EXPECT_EQ(work.branches, naive.work.branches);
+      EXPECT_EQ(work.merged, naive.work.merged);
+      EXPECT_EQ(work.triangles, naive.work.triangles);
+      EXPECT_EQ(work.levels, levels);
+      EXPECT_GT(levels, 1U);
+      const processors::cost::TreeWork all = work_of(tree, moved, RefitWay::rebuild);
+      EXPECT_EQ(all.triangles, set->size());
+      EXPECT_EQ(all.build, tree.work());
+      EXPECT_GE(all.branches, work.branches);
+    }
+  }
+}
+
 RefitFrame frame_with(std::array<sim::Ticks, 3> making, std::array<sim::Ticks, 3> render) {
   RefitFrame frame;
   for (std::size_t way = 0; way < 3; ++way) {
@@ -150,6 +214,12 @@ TEST(RefitFrames, TheAnswerNamesTheShortestCycleAndHowSureItIs) {
             "Refitting has the shortest cycles, 800 ps for 2 frames, 20.0 % less than rebuild");
   EXPECT_EQ(line(frame_with({100, 0, 50}, {400, 0, 450}), false),
             "The cycles of rebuild and refit are equally long, 0.001 us at least");
+  // Rebuilding becomes better in the third frame.
+  RefitFrame last = frame_with({100, 0, 20}, {400, 0, 490});
+  last.number = 2;
+  EXPECT_NE(refit_answer(std::vector{first, frame_with({100, 0, 20}, {400, 0, 430}), last}, false)
+                .find("\nFrame 2 is the first whose cycle is shorter with the rebuilt tree\n"),
+            std::string::npos);
   EXPECT_EQ(refit_answer(std::vector{first}, false), "One frame: there is nothing to refit\n");
 }
 
