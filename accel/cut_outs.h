@@ -17,10 +17,10 @@
 
 namespace marti::accel {
 
-/// What a hit was asked for: its material, whose texture's texel decides.
+/// What a hit was asked for: its material, whose texture's texel decides; or a Gaussian.
 struct AnyHit {
-  std::uint32_t material = 0;
-  std::uint32_t texture = 0;
+  std::uint32_t material = 0;  ///< or the first record of the Gaussian whose proxy was hit
+  std::uint32_t texture = 0;   ///< scenes::no_texture for a Gaussian
   std::uint32_t texel = 0;
   bool counts = false;  ///< the triangle is not cut out there
 };

@@ -91,6 +91,12 @@ class LazyOctree {
     return octree_occluded<Real>(view(), ray, visitor);
   }
 
+  /// As Queries::nearest().
+  template <class Real = double, class Visitor>
+  void nearest(const Ray& ray, NearestGaussians& buffer, Visitor& visitor) const {
+    octree_nearest<Real>(view(), ray, buffer, visitor);
+  }
+
   /// Subdivides a node of pending(), unless that was done since, as a ray that reaches it does.
   void subdivide(std::uint32_t node) const;
   /// Subdivides until no P node is left. Throws UserError at max_entries (see above).

@@ -87,6 +87,12 @@ class Octree {
     return octree_occluded<Real>(view(), ray, visitor);
   }
 
+  /// As Queries::nearest().
+  template <class Real = double, class Visitor>
+  void nearest(const Ray& ray, NearestGaussians& buffer, Visitor& visitor) const {
+    octree_nearest<Real>(view(), ray, buffer, visitor);
+  }
+
  private:
   friend class CutOctree;  // a further walk, octree_cut.h
   [[nodiscard]] OctreeView view() const {

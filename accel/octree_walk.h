@@ -161,6 +161,13 @@ template <class Real, class View, class Visitor>
 }
 
 template <class Real, class View, class Visitor>
+void octree_nearest(const View& view, const Ray& ray, NearestGaussians& buffer, Visitor& visitor) {
+  const RaySetup<Real> setup(ray);
+  Best<Real> best(setup, HitFilter(buffer, visitor));
+  query_octree<false>(view, ray, setup, best, visitor);
+}
+
+template <class Real, class View, class Visitor>
 [[nodiscard]] bool octree_occluded(const View& view, const Ray& ray, Visitor& visitor) {
   const RaySetup<Real> setup(ray);
   Best<Real> best(setup, HitFilter(*view.triangles, visitor));

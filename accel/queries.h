@@ -1,4 +1,4 @@
-// The two questions that rays ask, for structures that answer both with one walk.
+// The questions that rays ask, for structures that answer all with one walk.
 #pragma once
 
 #include "accel/ray.h"
@@ -27,6 +27,14 @@ class Queries {
     const RaySetup<Real> setup(ray);
     Best<Real> best(setup, HitFilter(structure().triangles(), visitor));
     return structure().template query<true>(ray, setup, best, visitor);
+  }
+
+  /// Fills a buffer with the nearest Gaussians, whose proxies the triangles must be.
+  template <class Real = double, class Visitor>
+  void nearest(const Ray& ray, NearestGaussians& buffer, Visitor& visitor) const {
+    const RaySetup<Real> setup(ray);
+    Best<Real> best(setup, HitFilter(buffer, visitor));
+    structure().template query<false>(ray, setup, best, visitor);
   }
 
  private:

@@ -52,6 +52,7 @@ TriangleSet::TriangleSet(const scenes::Scene& scene) {
     instances_ = scene.instances;
     bounds_ = scenes::bounds_of(scene);
   }
+  gaussians_ = scene.gaussians;
   if (CutOuts holes(scene); !holes.empty()) {
     cut_outs_ = std::make_shared<const CutOuts>(std::move(holes));
   }

@@ -69,6 +69,8 @@ class TriangleSet {
   [[nodiscard]] const std::vector<scenes::InstancePlace>& instances() const { return instances_; }
   /// The holes of the triangles; null where none has any.
   [[nodiscard]] const CutOuts* cut_outs() const { return cut_outs_.get(); }
+  /// The Gaussians whose proxies the triangles are; null: none's.
+  [[nodiscard]] const scenes::Gaussians* gaussians() const { return gaussians_.get(); }
   /// The tight box of all primitives, in all instances; empty when there are none.
   [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
   /// The tight box of some of them.
@@ -83,6 +85,7 @@ class TriangleSet {
   std::vector<PrimitiveRange> meshes_;
   std::vector<scenes::InstancePlace> instances_;
   std::shared_ptr<const CutOuts> cut_outs_;
+  std::shared_ptr<const scenes::Gaussians> gaussians_;
   scenes::Bounds bounds_;
 };
 

@@ -19,6 +19,13 @@ bool HitFilter::passes(std::uint32_t triangle, const std::array<double, 3>& weig
   return hit.counts;
 }
 
+double HitFilter::offer(std::uint32_t gaussian, double limit) const {
+  if (listener_ != nullptr) {
+    listener_->any_hit({nearest_->record(gaussian), scenes::no_texture, 0, false});
+  }
+  return nearest_->offer(gaussian, limit);
+}
+
 namespace {
 
 // Kahan: a * b - c * d with an error of at most 1.5 ulp, so the sign is exact and zero means zero.

@@ -25,6 +25,7 @@
 
 #include "accel/counted.h"
 #include "accel/cut_outs.h"
+#include "accel/nearest_gaussians.h"
 #include "accel/ray.h"
 #include "accel/real.h"
 #include "accel/triangles.h"
@@ -63,7 +64,11 @@ struct EdgeFunctions {
   Real w;
 };
 
-/// Says whether a hit of a triangle counts, and tells a visitor that wants to know.
+template <class Real>
+struct Best;
+
+/// Says whether a hit of a triangle counts, and tells a visitor that wants to know. Where Gaussians are asked
+/// for none does: front faces of their proxies are offered to a buffer.
 class HitFilter {
  public:
   HitFilter() = default;
@@ -74,12 +79,26 @@ class HitFilter {
       listener_ = &visitor;
     }
   }
+  template <class Visitor>
+  HitFilter(NearestGaussians& nearest, Visitor& visitor) : nearest_(&nearest) {
+    if constexpr (std::is_base_of_v<AnyHitListener, Visitor>) {
+      listener_ = &visitor;
+    }
+  }
   /// Whether it may have to be asked at all.
-  [[nodiscard]] bool on() const { return cut_outs_ != nullptr; }
+  [[nodiscard]] bool on() const { return cut_outs_ != nullptr || nearest_ != nullptr; }
+  [[nodiscard]] bool wants_gaussians() const { return nearest_ != nullptr; }
   [[nodiscard]] bool passes(std::uint32_t triangle, const std::array<double, 3>& weights) const;
+  /// The hit of a front face of the proxy with this primitive. May shorten the ray.
+  template <class Real>
+  void offer(std::uint32_t primitive, Best<Real>& best) const;
 
  private:
+  /// Returns the limit that follows from `limit`.
+  [[nodiscard]] double offer(std::uint32_t gaussian, double limit) const;
+
   const CutOuts* cut_outs_ = nullptr;
+  NearestGaussians* nearest_ = nullptr;
   AnyHitListener* listener_ = nullptr;
 };
 
@@ -108,6 +127,16 @@ struct Best {
     return {plain(t), primitive, plain(edges.u / det), plain(edges.v / det), plain(edges.w / det)};
   }
 };
+
+template <class Real>
+void HitFilter::offer(std::uint32_t primitive, Best<Real>& best) const {
+  const auto limit = static_cast<double>(plain(best.t));
+  const double shorter = offer(primitive / scenes::proxy_triangles, limit);
+  if (shorter < limit) {
+    best.t = Real(shorter);
+    best.primitive = nearest_->last();  // walks look whether it has changed
+  }
+}
 
 /// A sheared corner.
 template <class Real>
@@ -190,8 +219,17 @@ inline bool accept(const RaySetup<Real>& ray, const EdgeFunctions<Real>& edges, 
     return false;
   }
   if constexpr (Holes) {
-    if (best.filter.on() && !best.filter.passes(id, weights_of(edges, det))) [[unlikely]] {
-      return false;
+    if (best.filter.on()) [[unlikely]] {
+      if (best.filter.wants_gaussians()) {
+        // The edges' sign is that of the winding as seen along the positive axis kz.
+        if ((plain(det) > 0.0) == (plain(ray.scale) > 0.0)) {
+          best.filter.offer(best.first + id, best);
+        }
+        return false;
+      }
+      if (!best.filter.passes(id, weights_of(edges, det))) {
+        return false;
+      }
     }
   }
   best.t = t;

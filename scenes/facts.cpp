@@ -70,6 +70,10 @@ std::uint64_t host_bytes(const Scene& scene) {
                         scene.triangles.size() * sizeof(Triangle) + scene.quadrics.size() * sizeof(Quadric) +
                         scene.instances.size() * sizeof(InstancePlace) +
                         scene.rays.rays.size() * sizeof(GivenRay) + scene.rays.any.size() / 8;
+  if (scene.gaussians != nullptr) {
+    bytes += scene.gaussians->shapes.size() * sizeof(Gaussian) +
+             scene.gaussians->coefficients.size() * sizeof(float);
+  }
   for (const Texture& texture : scene.textures) {
     bytes += texture.texels.size() * sizeof(texture.texels[0]) +
              (texture.file == nullptr ? 0 : texture.file->size());

@@ -48,6 +48,9 @@ void MergedScene::open(std::string_view spec, const std::filesystem::path& base_
     }
   }
   if (placement != nullptr) {
+    if (part.gaussians != nullptr) {
+      whole_.fail(name + ": Gaussians cannot be placed, because their colours would not turn with them");
+    }
     place(*placement, name, part);
   }
   add(std::move(part), name);
@@ -62,6 +65,14 @@ void MergedScene::add(Scene part, const std::string& name) {
     whole_.fail("its parts have more than " + std::to_string(most) +
                 " primitives of a kind or vertices, which is more than is accepted");
   }
+  const auto has_primitives = [](const Scene& scene) {
+    return !scene.triangles.empty() || !scene.quadrics.empty();
+  };
+  if ((part.gaussians != nullptr && (has_primitives(scene_) || !instances_.empty())) ||
+      (scene_.gaussians != nullptr && has_primitives(part))) {
+    whole_.fail("Gaussians stand in a scene of their own, beside which a list may have a camera only");
+  }
+  scene_.gaussians = part.gaussians != nullptr ? part.gaussians : scene_.gaussians;
   whole_.take_memory(host_bytes(part), "its parts take");
   for (Material& material : part.materials) {
     for (std::uint32_t* texture : {&material.texture, &material.cut_out.texture}) {

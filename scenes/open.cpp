@@ -126,7 +126,7 @@ AnimatedScene open_animated(std::string_view spec, const OpenOptions& options, c
     return open_folder(path_of(spec, options), options.file, decode);
   }
   refuse_folder(spec, options);
-  Scene scene = make_procedural(spec, options.file.memory);
+  Scene scene = make_procedural(spec, options.file.memory, options.file.instances);
   refuse_parts(spec, "a procedural scene", options.file);
   set_view(scene, options.file);
   return AnimatedScene(std::move(scene));

@@ -121,6 +121,9 @@ Scene ply_mesh(const Parameters& parameters, const SourceFile& file, Text& text)
   } catch (const NoTriangles&) {
     return {};
   }
+  if (mesh.gaussians != nullptr) {
+    parameters.fail("its PLY file holds Gaussians, which are no shape");
+  }
   Scene geometry;
   geometry.positions = std::move(mesh.positions);
   geometry.normals = std::move(mesh.normals);

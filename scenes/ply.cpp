@@ -4,12 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "scenes/default_view.h"
+#include "scenes/gaussian_proxies.h"
+#include "scenes/ply_gaussians.h"
 #include "scenes/ply_header.h"
 #include "scenes/ply_values.h"
 #include "scenes/polygon_mesh.h"
@@ -52,7 +56,8 @@ class PlyReader {
     if (vertex == nullptr) {
       file_.fail("it has no element 'vertex'");
     }
-    if (element("face") == nullptr) {
+    const bool gaussians = holds_gaussians(*vertex);
+    if (element("face") == nullptr && !gaussians) {
       file_.fail_empty("it has no element 'face'");
     }
     vertices_ = vertex->count;
@@ -62,20 +67,27 @@ class PlyReader {
     }
     for (const PlyElement& element : header_.elements) {
       properties_ += element.properties.size();
-      if (element.name == "vertex") {
+      if (element.name == "vertex" && gaussians) {
+        take_gaussians(element);
+      } else if (element.name == "vertex") {
         read_vertices(element);
-      } else if (element.name == "face") {
+      } else if (element.name == "face" && !gaussians) {
         read_faces(element);
       } else {
         skip(element);
       }
     }
     values_.finish();
-    make_triangles();
-    mesh_.finish(left_out_);
+    if (gaussians) {
+      finish_gaussians();
+    } else {
+      make_triangles();
+      mesh_.finish(left_out_);
+    }
     scene_.notes.insert(scene_.notes.end(), notes_.begin(), notes_.end());
     FileUse use;
-    use.parts = {{"elements", header_.elements.size(), 2}, {"properties", properties_, properties_used_}};
+    use.parts = {{"elements", header_.elements.size(), gaussians ? 1U : 2U},
+                 {"properties", properties_, properties_used_}};
     return AnimatedScene(std::move(scene_), std::move(use));
   }
 
@@ -188,6 +200,28 @@ class PlyReader {
         scene_.uvs.push_back(turned_coordinates(given[6], given[7]));
       }
     }
+  }
+
+  void take_gaussians(const PlyElement& element) {
+    std::uint64_t unseen = 0;
+    auto gaussians = std::make_shared<Gaussians>(read_gaussians(element, values_, file_, unseen));
+    properties_used_ = 11 + 3 * gaussians->terms();
+    if (unseen > 0) {
+      notes_.push_back("Left out: " + std::to_string(unseen) + " of " + std::to_string(element.count) +
+                       " Gaussians, which are too transparent to be seen (an alpha of at most 1/255).");
+    }
+    scene_.gaussians = std::move(gaussians);
+  }
+
+  void finish_gaussians() {
+    if (scene_.gaussians->shapes.empty()) {
+      file_.fail_empty("none of its Gaussians can be seen");
+    }
+    stand_proxies(scene_, file_.options().instances, file_.options().max_triangles);
+    scene_.name = file_.path().filename().string();
+    scene_.framed = true;
+    set_view(scene_, file_.options());
+    note_left_out(left_out_, scene_);
   }
 
   void read_faces(const PlyElement& element) {

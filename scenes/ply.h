@@ -7,7 +7,8 @@
 // properties may come in any order. All other properties, colours too, and other elements are left out with a
 // note. Lines of the header that are no statement, and in text other types than PLY's and normals that are
 // not of theirs, are replaced and counted (docs/scenes.md, FileOptions::strict). A PLY file has no materials:
-// all is matt grey (0.8), as an OBJ file's faces without one.
+// all is matt grey (0.8), as an OBJ file's faces without one. A file whose vertices are Gaussians
+// (ply_gaussians.h) needs no faces; it becomes Scene::gaussians and their proxies.
 #pragma once
 
 #include <filesystem>

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/gaussian_proxies.h"
 #include "scenes/spd.h"
 #include "sim/error.h"
 #include "sim/nearest.h"
@@ -17,6 +18,8 @@ namespace {
 // While a scene is made: a triangle with its share of vertices and their index, or a sphere, cylinder or
 // cone, in lists that grow by doubling.
 constexpr std::uint64_t bytes_a_primitive = 160;
+// With the teapot's triangle from which it is made.
+constexpr std::uint64_t bytes_a_gaussian = sizeof(Gaussian) + 48 * sizeof(float) + bytes_a_primitive;
 
 constexpr std::array<ProceduralVariant, 1> teapot_variants = {
     ProceduralVariant{"pot", "the pot alone, without the chequered board"}};
@@ -31,7 +34,7 @@ constexpr std::uint64_t power(std::uint64_t base, std::uint64_t n) {
 }
 
 // The largest sizes give at most about 17 million triangles, or 1.1 million spheres, cylinders and cones.
-constexpr std::array<ProceduralScene, 13> registry = {
+constexpr std::array<ProceduralScene, 14> registry = {
     ProceduralScene{"balls",
                     0,
                     6,
@@ -39,6 +42,15 @@ constexpr std::array<ProceduralScene, 13> registry = {
                     "a flake of spheres, n generations of them, on a floor; (9^(n+1) - 1) / 8 spheres",
                     {},
                     [](std::uint64_t n) { return (power(9, n + 1) - 1) / 8 + 2; }},
+    ProceduralScene{
+        "gaussians",
+        2,
+        160,
+        12,
+        "the surface of teapot:n:pot as Gaussians, with baked light; 64 n^2 - 8 n of them, each in a "
+        "proxy of 20 triangles",
+        {},
+        [](std::uint64_t n) { return proxy_triangles * (64 * n * n - 8 * n); }},
     ProceduralScene{"gears",
                     1,
                     30,
@@ -130,13 +142,13 @@ Scene make(std::string_view name, std::uint32_t size, bool whole) {
     std::string_view name;
     Scene (*make)(std::uint32_t size);
   };
-  static constexpr std::array<Recipe, 11> recipes = {
-      Recipe{"balls", spd::make_balls},       Recipe{"gears", spd::make_gears},
-      Recipe{"jacks", spd::make_jacks},       Recipe{"lattice", spd::make_lattice},
-      Recipe{"mount", spd::make_mount},       Recipe{"rings", spd::make_rings},
-      Recipe{"room", spd::make_room},         Recipe{"shells", spd::make_shells},
-      Recipe{"sombrero", spd::make_sombrero}, Recipe{"tetra", spd::make_tetra},
-      Recipe{"tree", spd::make_tree}};
+  static constexpr std::array<Recipe, 12> recipes = {
+      Recipe{"balls", spd::make_balls},     Recipe{"gaussians", spd::make_gaussians},
+      Recipe{"gears", spd::make_gears},     Recipe{"jacks", spd::make_jacks},
+      Recipe{"lattice", spd::make_lattice}, Recipe{"mount", spd::make_mount},
+      Recipe{"rings", spd::make_rings},     Recipe{"room", spd::make_room},
+      Recipe{"shells", spd::make_shells},   Recipe{"sombrero", spd::make_sombrero},
+      Recipe{"tetra", spd::make_tetra},     Recipe{"tree", spd::make_tree}};
   for (const Recipe& recipe : recipes) {
     if (recipe.name == name) {
       return recipe.make(size);
@@ -197,7 +209,7 @@ std::uint32_t parse_size(std::string_view text, const ProceduralScene& scene, co
 
 std::span<const ProceduralScene> procedural_scenes() { return registry; }
 
-Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory) {
+Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory, Instances instances) {
   const std::string where = "scene '" + sim::shown(spec) + "': ";
   std::string_view rest = spec;
   const ProceduralScene& kind = find_scene(next_part(rest), where);
@@ -217,9 +229,16 @@ Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory) {
                                                 "; known are " + joined(names)));
     }
   }
-  memory.require(kind.primitives(size) * bytes_a_primitive, "the scene '" + sim::shown(spec) + "' takes",
-                 "take a smaller scene");
+  const std::uint64_t primitives = kind.primitives(size);
+  const bool gaussians = kind.name == "gaussians";
+  memory.require(gaussians ? bytes_of_proxies(primitives / proxy_triangles, instances) +
+                                 primitives / proxy_triangles * bytes_a_gaussian
+                           : primitives * bytes_a_primitive,
+                 "the scene '" + sim::shown(spec) + "' takes", "take a smaller scene");
   Scene scene = make(kind.name, size, !has_variant);
+  if (gaussians) {
+    stand_proxies(scene, instances, FileOptions().max_triangles);
+  }
   scene.name = kind.name;
   scene.lights_are_all = true;
   if (kind.minimum_size != kind.maximum_size) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "scenes/file_options.h"
 #include "scenes/scene.h"
 #include "sim/memory_budget.h"
 
@@ -34,7 +35,8 @@ struct ProceduralScene {
 /// Makes the scene of `spec` = name[:size[:variant]], for example "teapot", "gears:4", "teapot:12:pot". The
 /// same spec gives the same bytes. Throws UserError for an unknown name or variant (naming the nearest valid
 /// one), for a size that is not a whole number or out of range, and KeyError when the scene takes more than
-/// `memory`.
-[[nodiscard]] Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory = {});
+/// `memory`. `instances`: whether Gaussians' proxies are kept; that of none of the other scenes is.
+[[nodiscard]] Scene make_procedural(std::string_view spec, const sim::MemoryBudget& memory = {},
+                                    Instances instances = Instances::copied);
 
 }  // namespace marti::scenes

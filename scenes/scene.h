@@ -14,6 +14,7 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/camera.h"
+#include "scenes/gaussians.h"
 #include "scenes/given_rays.h"
 #include "scenes/instance.h"
 #include "scenes/quadric.h"
@@ -115,6 +116,9 @@ struct Scene {
   std::vector<PrimitiveRange> meshes;
   std::vector<InstancePlace> instances;
   std::vector<Quadric> quadrics;  ///< primitive ids from triangles.size() on; each valid as in quadric.h
+  /// The Gaussians that the triangles are proxies of (gaussians.h), of all triangles and instances; null: of
+  /// none.
+  std::shared_ptr<const Gaussians> gaussians;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;

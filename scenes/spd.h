@@ -62,6 +62,8 @@ void add_square(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::uin
 [[nodiscard]] glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians);
 
 [[nodiscard]] Scene make_balls(std::uint32_t n);
+/// Without proxies (gaussian_proxies.h).
+[[nodiscard]] Scene make_gaussians(std::uint32_t n);
 [[nodiscard]] Scene make_gears(std::uint32_t n);
 [[nodiscard]] Scene make_jacks(std::uint32_t n);
 [[nodiscard]] Scene make_large();

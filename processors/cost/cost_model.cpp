@@ -159,6 +159,13 @@ StepCycles step_cycles(const machine::OperationCycles& cycles, const RecordWords
   steps.light = price(path ? mixes.path_light : mixes.light, cycles, 0);
   steps.texel = price(mixes.texel, cycles, fetch_record(cycles, words.texel));
   steps.any_hit = price(mixes.any_hit, cycles, fetch_record(cycles, words.material));
+  if (integrator == program::Integrator::gaussians) {
+    // A ray that goes on is set up as one from the camera is.
+    steps.ray[static_cast<std::size_t>(program::RayKind::refraction)] =
+        steps.ray[static_cast<std::size_t>(program::RayKind::camera)];
+    steps.shade = price(mixes.collect, cycles, fetch_record(cycles, words.material));
+    steps.any_hit = price(mixes.meet, cycles, fetch_record(cycles, words.material));
+  }
   steps.cut = price(mixes.cut, cycles, fetch_record(cycles, words.node));
   steps.pass = price(mixes.cut, cycles, fetch_record(cycles, words.material));
   steps.pixel = price(mixes.pixel, cycles, store_record(cycles, words.pixel));

@@ -228,6 +228,12 @@ constexpr OperationMix voxel_cut{6000, 10000, 0, 1000, 6000, 2000};
 /// texel's alpha times the material's compared with the cut-off.
 constexpr OperationMix asking{0, 1000, 3000, 0, 1000, 0};
 
+/// Measured by measure_gaussians().
+constexpr OperationMix meeting{22000, 30000, 1000, 0, 1000, 0};
+constexpr OperationMix collecting{26000, 40000, 0, 0, 2000, 0};
+/// Its place among the nearest: a search among 16.
+constexpr OperationMix placing{0, 0, 0, 0, 4000, 0};
+
 OperationMix sum(const OperationMix& a, const OperationMix& b) {
   return {a.add + b.add,         a.multiply + b.multiply, a.divide + b.divide, a.square_root + b.square_root,
           a.compare + b.compare, a.integer + b.integer};
@@ -298,6 +304,24 @@ MeasuredMixes measure_operation_mixes(const scenes::Scene& scene, const accel::T
   return measured;
 }
 
+std::array<OperationMix, 2> measure_gaussians() {
+  scenes::Gaussians one;
+  one.shapes.emplace_back();
+  one.degree = scenes::largest_degree;
+  one.coefficients.assign(std::size_t{3} * one.terms(), 0.0F);
+  const accel::Ray ray{{0.25, 0.5, -8.0}, {0.0, 0.0, 1.0}};
+  OperationCounts before = accel::operation_counts();
+  const Counted squared = accel::least_squared<Counted>(one.shapes[0], ray);
+  static_cast<void>(squared <= Counted(1.0));
+  const OperationCounts meeting_one = accel::operation_counts() - before;
+  before = accel::operation_counts();
+  program::Collected<Counted> light;
+  program::collect(one, {1.0, 0, squared.value()}, program::Vec3<Counted>(ray.direction), light);
+  static_cast<void>(light.through < Counted(program::least_through));
+  const std::uint64_t records = one.records() - 1;
+  return {sum(mean_mix(meeting_one, 1), placing), mean_mix(accel::operation_counts() - before, records)};
+}
+
 MeasuredWalks measure_walks(const accel::Structure& structure, std::span<const accel::Ray> rays) {
   CountingRecorder recorder(structure, false);
   accel::visit_structure(structure, [&](const auto& concrete) {
@@ -343,7 +367,9 @@ OperationMixes with_shading(const WalkMixes& walk) {
           .texel = {6000, 11000, 0, 0, 0, 11000},
           .pixel = pixel_conversion,
           .cut = voxel_cut,
-          .any_hit = asking};
+          .any_hit = asking,
+          .meet = sum(meeting, placing),
+          .collect = collecting};
 }
 
 }  // namespace

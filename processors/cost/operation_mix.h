@@ -52,6 +52,8 @@ struct OperationMix {
 ///           way on is a part of shading; the light is an emissive triangle
 ///   texel   interpolating the texture's coordinates, finding the texel, applying it
 ///   any_hit the corners' weights at a hit of a triangle with holes, and the texel's alpha compared
+///   meet    how near a ray comes to a Gaussian, and its place among the nearest
+///   collect a record of a Gaussian's colour, and its share of the alpha and of adding it
 ///   pixel   converting the finished colour
 ///   cut     with the voxel cut: finding that a node is small and which share of it is covered
 /// Fetching a record's words and computing its address is priced from the layout, beside these.
@@ -72,6 +74,8 @@ struct OperationMixes {
   OperationMix pixel;
   OperationMix cut;
   OperationMix any_hit;
+  OperationMix meet;
+  OperationMix collect;
 };
 
 /// The table that step_cycles prices. Measured on teapot:12 in an octree or a BSP tree (max_objects 9,
@@ -94,6 +98,9 @@ struct MeasuredMixes {
                                                     const accel::TriangleSet& triangles,
                                                     const accel::Structure& structure,
                                                     const program::RenderOptions& options);
+
+/// `meet` and `collect` of operation_mixes(), of Gaussians of degree 3 whose colour is three records.
+[[nodiscard]] std::array<OperationMix, 2> measure_gaussians();
 
 /// Operations that some rays took: sums, not means.
 struct MeasuredWalks {

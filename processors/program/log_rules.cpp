@@ -111,10 +111,11 @@ class StepRules {
                    "a cut without its averaged material, or the reverse");
       fault.add_if(before == Step::pass && (!visits_node(step) || step == Step::cut),
                    "a pass without its node");
-      fault.add_if(step == Step::any_hit && !(is_leaf(before) || (asked && before == Step::texel)),
+      fault.add_if(step == Step::any_hit && !(is_leaf(before) || (asked && before == last_of_any_hit())),
                    "a hit that is asked about without its leaf");
-      fault.add_if(before == Step::any_hit && step != Step::texel,
+      fault.add_if(before == Step::any_hit && !of_gaussians() && step != Step::texel,
                    "a hit that is asked about without its texel");
+      fault.add_if(step == Step::texel && of_gaussians(), "a texel of Gaussians");
       asked = step == Step::any_hit || (before == Step::any_hit && step == Step::texel);
       if (fault.none()) {
         check_step(step, operand, &words[at], fault);
@@ -124,12 +125,14 @@ class StepRules {
       }
     }
     fault.add_if(before == Step::cut || before == Step::pass, "a pixel ends in the middle of a voxel");
-    fault.add_if(before == Step::any_hit, "a hit that is asked about without its texel");
+    fault.add_if(before == Step::any_hit && !of_gaussians(), "a hit that is asked about without its texel");
     fault.add_if(log_.samples != 1 && !words.empty() && samples != log_.samples,
                  "a pixel has fewer or more camera rays than samples");
   }
 
  private:
+  [[nodiscard]] bool of_gaussians() const { return log_.integrator == Integrator::gaussians; }
+  [[nodiscard]] Step last_of_any_hit() const { return of_gaussians() ? Step::any_hit : Step::texel; }
   static bool is_leaf(Step step) {
     return step == Step::leaf || step == Step::partial_leaf || step == Step::mailed_leaf;
   }
@@ -191,7 +194,8 @@ class OrderRules {
     for (std::size_t at = 0; at < words.size() && fault.none(); at += step_words(&words[at])) {
       const Step step = step_of(words[at]);
       if (step == Step::ray) {
-        fault.add_if(bounce_of(operand_of(words[at])) > max_ray_depth,
+        fault.add_if(bounce_of(operand_of(words[at])) >
+                         (log_.integrator == Integrator::gaussians ? most_rounds : max_ray_depth),
                      "a ray of more bounces than it can have");
         begin_ray();
         tracing = true;
@@ -201,7 +205,8 @@ class OrderRules {
         visit(step, operand_of(words[at]), fault);
       } else {
         fault.add_if(rays == 0, "a step before the first ray");
-        tracing = tracing && (step == Step::pass || step == Step::any_hit || before == Step::any_hit);
+        tracing = tracing && (step == Step::pass || step == Step::any_hit ||
+                              (before == Step::any_hit && step == Step::texel));
       }
       before = step;
     }

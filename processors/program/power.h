@@ -1,17 +1,13 @@
-// x to the power y from additions, multiplications and one division: the highlights' exponentiation with
-// countable operations, and the same bits on every host (the C library's pow differs between versions).
+// x to the power y: the highlights' exponentiation with countable operations, and the same bits on every
+// host.
 #pragma once
 
-#include <bit>
-#include <cstdint>
+#include "scenes/binary_power.h"
 
 namespace marti::processors::program {
 
 /// base^exponent for base in [0, 1] and exponent >= 0, with a relative error below 1e-12 where the result
 /// is above 1e-30, and 0 below 2^-1000. base 0 gives 0 (1 for exponent 0).
-///
-/// log2 by the series of artanh((m-1)/(m+1)) on the mantissa in [sqrt(1/2), sqrt(2)); exp2 by the Taylor
-/// series of e^z for |z| <= ln(2)/2 (Muller, Elementary Functions, 3rd ed., sections 11.2 and 11.4).
 template <typename Real>
 Real power(const Real& base, const Real& exponent) {
   if (exponent == Real(0.0)) {
@@ -20,36 +16,7 @@ Real power(const Real& base, const Real& exponent) {
   if (!(base > Real(0.0))) {
     return Real(0.0);
   }
-  // The binary exponent is split off by integer operations on a register.
-  const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(base));
-  auto binary = static_cast<std::int64_t>(bits >> 52U) - 1023;
-  auto mantissa =
-      static_cast<Real>(std::bit_cast<double>((bits & 0x000fffffffffffffU) | 0x3ff0000000000000U));
-  if (mantissa > Real(1.4142135623730951)) {
-    mantissa = mantissa * Real(0.5);
-    ++binary;
-  }
-  const Real s = (mantissa - Real(1.0)) / (mantissa + Real(1.0));
-  const Real s2 = s * s;
-  auto series = static_cast<Real>(1.0 / 19.0);
-  for (int k = 17; k >= 1; k -= 2) {
-    series = series * s2 + Real(1.0 / k);
-  }
-  const Real logarithm =
-      Real(static_cast<double>(binary)) + s * series * Real(2.8853900817779268);  // 2 / ln 2
-
-  const Real scaled = exponent * logarithm;
-  if (scaled < Real(-1000.0)) {
-    return Real(0.0);
-  }
-  const auto whole = static_cast<std::int64_t>(static_cast<double>(scaled) - 0.5);  // scaled <= 0: to nearest
-  const Real z = (scaled - Real(static_cast<double>(whole))) * Real(0.69314718055994531);
-  Real result(1.0);
-  for (int k = 13; k >= 1; --k) {
-    result = result * z * Real(1.0 / k) + Real(1.0);
-  }
-  const auto scale = static_cast<std::uint64_t>(whole + 1023) << 52U;
-  return result * Real(std::bit_cast<double>(scale));
+  return scenes::two_to(exponent * scenes::log_two(base));
 }
 
 }  // namespace marti::processors::program

@@ -140,7 +140,9 @@ class RowRecorder : public accel::AnyHitListener {
   void any_hit(const accel::AnyHit& hit) final {
     asked_ = true;
     put(make_word(Step::any_hit, hit.material));
-    texel(hit.texture, hit.texel);
+    if (hit.texture != scenes::no_texture) {
+      texel(hit.texture, hit.texel);
+    }
   }
 
   /// What a pixel was recorded as before.
@@ -193,7 +195,7 @@ class RowRecorder : public accel::AnyHitListener {
     while (word != next_) {
       std::uint32_t* leaf = word;
       while (step_of(*leaf) == Step::any_hit) {
-        leaf += any_hit_words;
+        leaf += any_hit_words(leaf);
       }
       std::uint32_t* const end = leaf + step_words(leaf);
       std::rotate(word, leaf, end);

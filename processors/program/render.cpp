@@ -35,6 +35,7 @@ void check_options(const RenderOptions& options) {
   in_range("max_depth", options.max_depth, 1, max_ray_depth);
   in_range("samples", options.samples, 1, max_samples);
   in_range("secondary_rays", options.secondary_rays, 1, max_secondary_rays);
+  in_range("nearest_hits", options.nearest_hits, 1, max_nearest_hits);
   if (!(options.occlusion_distance >= 0.0 && std::isfinite(options.occlusion_distance))) {
     throw sim::UserError("the render's occlusion_distance is " + std::to_string(options.occlusion_distance) +
                          "; it must be finite and not below 0");
@@ -65,10 +66,14 @@ void check_options(const RenderOptions& options) {
                         "cutting rays off would darken a path-traced image, which ends paths by chance "
                         "instead; set image.min_weight = 0");
   }
-  if (sends_any_hit_rays(options.integrator) && options.voxel_cut > 0.0) {
+  if ((sends_any_hit_rays(options.integrator) || options.integrator == Integrator::gaussians) &&
+      options.voxel_cut > 0.0) {
     throw sim::KeyError("image.voxel_cut",
                         "averages what mirrors and lights show; set image.voxel_cut = 0 where no more than "
-                        "shadows are asked for");
+                        "shadows or Gaussians are asked for");
+  }
+  if (options.integrator == Integrator::gaussians && options.floats) {
+    throw sim::UserError("Gaussians are met in doubles; they cannot be rendered in floats");
   }
   if (options.integrator == Integrator::rays) {
     sim::ensure(options.voxel_cut == 0.0 && options.samples == 1 && !options.window &&
@@ -91,6 +96,12 @@ std::optional<VoxelAverages> make_voxels(const scenes::Scene& scene, const accel
   return VoxelAverages::build(scene, octree, level, threads);
 }
 
+std::uint32_t material_records(const scenes::Scene& scene, const RenderOptions& options) {
+  return static_cast<std::uint32_t>(options.integrator == Integrator::gaussians
+                                        ? scene.gaussians->shapes.size() * scene.gaussians->records()
+                                        : scene.materials.size());
+}
+
 /// The log without its rows: what it says of the database.
 WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure, const Emitters& emitters,
                   const RenderOptions& options) {
@@ -109,7 +120,7 @@ WorkLog start_log(const scenes::Scene& scene, const accel::Structure& structure,
   for (std::uint32_t id = primitives.triangles(); id < primitives.size(); ++id) {
     log.quadrics.push_back(primitives.kind(id));
   }
-  log.materials = static_cast<std::uint32_t>(scene.materials.size());
+  log.materials = material_records(scene, options);
   log.lights = options.integrator == Integrator::occlusion
                    ? 1
                    : static_cast<std::uint32_t>(scene.lights.size()) + (emitters.empty() ? 0U : 1U);
@@ -147,6 +158,18 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   if (options.integrator == Integrator::rays && scene.rays.rays.empty()) {
     throw sim::KeyError("image.integrator",
                         "\"rays\" needs the rays of a file (image.rays), which this command does not trace");
+  }
+  if (options.integrator == Integrator::gaussians) {
+    if (scene.gaussians == nullptr) {
+      throw sim::KeyError("image.integrator",
+                          "\"gaussians\" needs a scene of Gaussians: a PLY file of 3D Gaussian splatting, or "
+                          "gaussians:12");
+    }
+    if (options.meets) {
+      throw sim::KeyError("rt.share",
+                          "which Gaussians are the nearest would rest on who helps whom; set rt.share = "
+                          "\"none\"");
+    }
   }
   if (options.meets && triangles.cut_outs() != nullptr) {
     throw sim::KeyError(
@@ -191,7 +214,7 @@ Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
   const Emitters emitters = asks_emitters(options.integrator) ? Emitters(scene) : Emitters();
   WorkLog log;
   if (options.record) {
-    check_log_capacity(structure.topology().nodes.size(), scene.materials.size() + frame.voxels,
+    check_log_capacity(structure.topology().nodes.size(), material_records(scene, options) + frame.voxels,
                        scene.lights.size() + 1, scene.textures.size());
     log = start_log(scene, structure, emitters, options);
     log.voxels = frame.voxels;

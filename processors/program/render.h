@@ -33,6 +33,15 @@ inline constexpr std::uint32_t max_ray_depth = 64;
 /// The largest RenderOptions::secondary_rays.
 inline constexpr std::uint32_t max_secondary_rays = 4096;
 
+/// The largest RenderOptions::nearest_hits.
+inline constexpr std::uint32_t max_nearest_hits = 1024;
+
+/// With Integrator::gaussians a ray ends when no more than this shines through what it has met.
+inline constexpr double least_through = 1e-3;
+/// It goes on at most this often: each Gaussian that it meets lets 254/255 through at most, so that it has
+/// come to its end after 1762 of them.
+inline constexpr std::uint32_t most_rounds = 1762;
+
 /// The largest RenderOptions::samples.
 inline constexpr std::uint32_t max_samples = 1024;
 
@@ -60,6 +69,9 @@ struct RenderOptions {
   /// With Integrator::occlusion: how far rays reach, in largest sides of the scene's box; 0: without end. At
   /// least 0 and finite.
   double occlusion_distance = 0.1;
+  /// With Integrator::gaussians: how many a ray finds in a round, 1 to max_nearest_hits. The image does not
+  /// depend on it.
+  std::uint32_t nearest_hits = 16;
   double min_weight = 0.0;  ///< 0 to 1: a ray whose largest weight in its sample is below this is not traced
   /// Camera rays of a pixel, 1 to max_samples, of the same weight. One goes through the pixel's centre,
   /// several through points drawn for them (sample_points.h), whose generator begins with `seed`.
@@ -150,9 +162,9 @@ struct Frame {
 /// Renders `scene`, whose primitives are `triangles` indexed by `structure`, on `threads` host threads (0:
 /// all of them). Throws UserError for options out of range; for a voxel cut without an octree, in floats, or
 /// of triangles with holes; for path tracing with a voxel cut or a min_weight; for given rays with a voxel
-/// cut, several samples or a window, or of a scene that has none; for what each ray meets (`meets`) of
-/// triangles with holes; and when recording a scene whose nodes, materials, lights or textures do not fit the
-/// log's 28-bit operands.
+/// cut, several samples or a window, or of a scene that has none; for Gaussians of a scene that has none, or
+/// in floats; for what each ray meets (`meets`) of triangles with holes or of Gaussians; and when recording a
+/// scene whose nodes, materials, lights or textures do not fit the log's 28-bit operands.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const accel::TriangleSet& triangles,
                            const accel::Structure& structure, const RenderOptions& options,
                            unsigned threads = 0);

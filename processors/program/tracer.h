@@ -24,6 +24,11 @@
 // the share of them that nothing blocks; one that would begin behind its own surface is not sent and counts
 // as blocked.
 //
+// Integrator::gaussians looks through the scene's Gaussians (accel/nearest_gaussians.h): a ray finds the
+// nearest of them, adds their colours from front to back, and goes on behind the last one, until hardly
+// anything shines through or it finds fewer than it can hold. Each round is a ray of the log, the first a
+// camera ray, all others refraction rays. The background shines through.
+//
 // Integrator::rays follows no light: a pixel is one of the scene's given rays, and its log the ray and its
 // visits. The image shows how far away what it hits is.
 //
@@ -37,12 +42,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include <glm/geometric.hpp>
 
 #include "accel/octree_cut.h"
 #include "accel/ray.h"
+#include "processors/program/gaussian_color.h"
 #include "processors/program/path_sampling.h"
 #include "processors/program/quadric_surface.h"
 #include "processors/program/recorder.h"
@@ -85,7 +92,11 @@ class Tracer {
         top_(options.window ? options.window->top : 0),
         share_(1.0 / options.samples),
         reach_(largest_side(structure.triangles().bounds())),
-        points_(options.samples, options.seed) {}
+        points_(options.samples, options.seed) {
+    if (options.integrator == Integrator::gaussians) {
+      nearest_.emplace(*scene.gaussians, options.nearest_hits, reach_);
+    }
+  }
 
   /// The colour of the frame's pixel (column, row): of the ray through its centre, or the mean of its
   /// samples.
@@ -110,6 +121,12 @@ class Tracer {
     for (std::uint32_t sample = 0; sample < options_.samples; ++sample) {
       if (options_.integrator != Integrator::whitted) {
         numbers_ = PathNumbers(x, y, sample, options_.seed);
+      }
+      if constexpr (!CutsVoxels<Structure>) {
+        if (nearest_) {
+          look_through(points_.at(x, y, sample));
+          continue;
+        }
       }
       trace(points_.at(x, y, sample));
     }
@@ -156,6 +173,53 @@ class Tracer {
       const Pending ray = stack_[--depth_of_stack_];
       follow(ray);
     }
+  }
+
+  /// With Integrator::gaussians: one camera ray, in rounds.
+  void look_through(const SamplePoint& point) requires(!CutsVoxels<Structure>) {
+    RayKind kind = RayKind::camera;
+    recorder_.phase(Phase::ray, kind);
+    const Vec direction = camera_direction(point);
+    accel::Ray ray = make_ray(Vec(plane_.origin), direction);
+    nearest_->begin(ray);
+    Collected<Real> light;
+    for (std::uint32_t round = 0;; ++round) {
+      ray.t_min = nearest_->next_round();
+      recorder_.ray(kind, round, ray);
+      structure_.template nearest<Real>(ray, *nearest_, recorder_);
+      ++rays_.traced[static_cast<std::size_t>(kind)];
+      rays_.hit[static_cast<std::size_t>(kind)] += nearest_->hits().empty() ? 0U : 1U;
+      recorder_.phase(Phase::shade, kind);
+      for (const accel::GaussianHit& hit : nearest_->hits()) {
+        shade(hit);
+        collect(*scene_.gaussians, hit, direction, light);
+        if (light.through < Real(least_through)) {
+          break;
+        }
+      }
+      if (light.through < Real(least_through) || !nearest_->full()) {
+        break;
+      }
+      kind = RayKind::refraction;
+      recorder_.phase(Phase::ray, kind);
+    }
+    const auto linear = [](const Real& value) {
+      return static_cast<Real>(linear_of_screen(static_cast<double>(value)));
+    };
+    const auto share = static_cast<Real>(share_);
+    const Vec weight(share, share, share);
+    add(weight, Vec(linear(light.color.x), linear(light.color.y), linear(light.color.z)));
+    add(weight, Vec(scene_.background) * light.through);
+  }
+
+  /// The records that hold the Gaussian's colour.
+  void shade(const accel::GaussianHit& hit) {
+    const std::uint32_t first = nearest_->record(hit.gaussian);
+    const unsigned degree = scene_.gaussians->degree;
+    for (std::uint32_t record = degree == 0 ? 0 : 1; record <= degree; ++record) {
+      recorder_.shade(first + record);
+    }
+    note(hit.gaussian, std::bit_cast<std::uint64_t>(hit.entry));
   }
 
   /// Traces a given ray. White is what lies at its origin and what blocks one that any hit will do for;
@@ -555,7 +619,8 @@ class Tracer {
   RayCounts rays_;
   std::uint64_t hit_hash_ = 0;
   std::uint64_t pixel_hash_ = 0;
-  GivenHit given_hit_;  ///< with Integrator::rays
+  GivenHit given_hit_;                              ///< with Integrator::rays
+  std::optional<accel::NearestGaussians> nearest_;  ///< with Integrator::gaussians
   double pixel_ = 0.0;  ///< with the voxel cut: solid angle below which a cell is taken whole
   double path_ = 0.0;   ///< with the voxel cut: from the eye to where new rays start
   /// Each ray taken off puts at most two on, once per level.

@@ -26,10 +26,10 @@
 namespace marti::processors::program {
 
 /// Which light the program follows: mirror images and refractions only, or also the light that surfaces
-/// scatter to each other; or none, and it finds what given rays hit (tracer.h).
-enum class Integrator : std::uint8_t { whitted, path, rays, shadow, occlusion };
-inline constexpr std::array<std::string_view, 5> integrator_names = {"whitted", "path", "rays", "shadow",
-                                                                     "occlusion"};
+/// scatter to each other; or none, and it finds what given rays hit, or looks through Gaussians (tracer.h).
+enum class Integrator : std::uint8_t { whitted, path, rays, shadow, occlusion, gaussians };
+inline constexpr std::array<std::string_view, 6> integrator_names = {"whitted", "path",      "rays",
+                                                                     "shadow",  "occlusion", "gaussians"};
 /// Whether points of emissive triangles are asked for light, as one light beside the scene's own.
 [[nodiscard]] constexpr bool asks_emitters(Integrator integrator) {
   return integrator == Integrator::path || integrator == Integrator::shadow;
@@ -49,7 +49,9 @@ inline constexpr std::array<std::string_view, ray_kinds> ray_kind_names = {"came
 /// The operand of a `ray` step. The bounce is the number of surface points between the eye and the ray's
 /// origin: 0 for camera rays, 1 for the rays that start where a camera ray ends. With Integrator::rays those
 /// of which the closest hit is wanted are camera rays, the others shadow rays, and all have bounce 0. The
-/// rays of Integrator::occlusion are shadow rays, and the sky about the point is their light.
+/// rays of Integrator::occlusion are shadow rays, and the sky about the point is their light. With
+/// Integrator::gaussians a camera ray goes on, in rounds, as refraction rays, whose bounce is that of the one
+/// before and 1.
 inline constexpr unsigned ray_kind_bits = 3;
 [[nodiscard]] constexpr std::uint32_t ray_operand(RayKind kind, std::uint32_t bounce) {
   return static_cast<std::uint32_t>(kind) | bounce << ray_kind_bits;
@@ -69,18 +71,22 @@ enum class Step : std::uint32_t {
   leaf,          ///< operand: node. A leaf record was read; all its entries were tested.
   partial_leaf,  ///< operand: node; second word: how many of its entries were tested.
   ray,           ///< operand: ray_operand(). A ray was set up and its traversal begins.
-  shade,         ///< operand: material. A hit point, normal and local colour were computed.
-  light,         ///< operand: light. One unoccluded light's contribution was added.
-  texel,         ///< operand: texture; second word: texel index in the texture. A texel was read.
-  cut,           ///< operand: node. Its record was read and the node taken as one voxel (accel/octree_cut.h);
-                 ///< the shade of its averaged material follows.
-  pass,  ///< operand: material. The averaged material of a node was read, but too little of the node is
-         ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
+  shade,         ///< operand: material. A hit point, normal and local colour were computed. With
+          ///< Integrator::gaussians: a record of a Gaussian's coefficients was read, and its part of the
+          ///< colour added.
+  light,  ///< operand: light. One unoccluded light's contribution was added.
+  texel,  ///< operand: texture; second word: texel index in the texture. A texel was read.
+  cut,    ///< operand: node. Its record was read and the node taken as one voxel (accel/octree_cut.h);
+          ///< the shade of its averaged material follows.
+  pass,   ///< operand: material. The averaged material of a node was read, but too little of the node is
+          ///< covered to take it as a voxel; its branch, leaf or partial_leaf follows.
   mailed_leaf,  ///< operand: node; second word: how many of its entries were looked up in the mailboxes;
                 ///< then one bit for each of them, from the lowest bit of the first word on: was it tested?
                 ///< The last word's other bits are 0. At least one was not.
   any_hit,  ///< operand: material. Whether a hit counts was found out: its coordinates were computed and the
-            ///< material read; the texel that decides follows. Behind the leaf with the triangle.
+            ///< material read; the texel that decides follows. Behind the leaf with the triangle. With
+            ///< Integrator::gaussians the operand is the first record of a Gaussian, which was read and put
+            ///< among the nearest if it is one of them; no texel follows.
   transform,  ///< operand: node, an instance. Its transform was read and the ray brought into the coordinates
               ///< of its mesh.
 };
@@ -125,8 +131,10 @@ inline constexpr std::uint32_t camera_ray = make_word(Step::ray, 0);
   return step == Step::branch || step == Step::leaf || step == Step::partial_leaf ||
          step == Step::mailed_leaf || step == Step::cut || step == Step::transform;
 }
-/// Number of words of an any_hit with its texel.
-inline constexpr std::size_t any_hit_words = 3;
+/// Number of words of the any_hit at `word`, with its texel if it has one. Another step follows in the log.
+[[nodiscard]] constexpr std::size_t any_hit_words(const std::uint32_t* word) {
+  return step_of(word[1]) == Step::texel ? 3 : 1;
+}
 /// Whether entry number `entry` was tested, according to a mailed_leaf's mask.
 [[nodiscard]] constexpr bool tested_in_mask(const std::uint32_t* mask, std::uint32_t entry) {
   return ((mask[entry / 32] >> (entry % 32)) & 1U) != 0;
@@ -203,8 +211,10 @@ struct LogFacts {
   std::uint32_t primitives = 0;  ///< number of primitive records in the database
   /// Kinds of the primitives behind the triangles: those with the ids from primitives - quadrics.size() on.
   std::vector<accel::PrimitiveKind> quadrics;
-  std::uint32_t materials = 0;  ///< number of material records, averaged ones included
-  std::uint32_t voxels = 0;     ///< of these, averaged for the voxel cut: the last ones
+  /// Number of material records, averaged ones included. With Integrator::gaussians these are the records of
+  /// the Gaussians, one after the other (scenes/gaussians.h).
+  std::uint32_t materials = 0;
+  std::uint32_t voxels = 0;  ///< of these, averaged for the voxel cut: the last ones
   /// Number of lights; with asks_emitters() and emissive triangles these are together one light more, the
   /// last.
   std::uint32_t lights = 0;

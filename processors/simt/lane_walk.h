@@ -142,7 +142,9 @@ bool LaneWalk::shade(Lane& lane, ShaderCounts& counts, const Read& read) const {
       case program::Step::any_hit:
         count(ShaderStep::any_hit);
         read_material(operand);
-        take_texel(program::operand_of(*lane.word++));
+        if (lane.word != lane.word_end && program::step_of(*lane.word) == program::Step::texel) {
+          take_texel(program::operand_of(*lane.word++));
+        }
         if (!waits_for_answer(lane)) {
           lane.goes_back = true;
           return true;

@@ -62,6 +62,9 @@ std::optional<std::string> not_sampled(const keys::FrameConfig& frame) {
   if (frame.render.integrator == processors::program::Integrator::rays) {
     return "the errors of samples of given rays have not been measured (image.integrator)";
   }
+  if (frame.render.integrator == processors::program::Integrator::gaussians) {
+    return "the errors of samples of Gaussians have not been measured (image.integrator)";
+  }
   return std::nullopt;
 }
 

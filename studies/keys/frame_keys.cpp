@@ -206,7 +206,8 @@ void declare_frame_keys(sim::Schema& schema) {
       "scatter to each other, emissive triangles as lights, noise that more samples lessen; rays: no image, "
       "but what the rays of image.rays hit; shadow, occlusion: from what camera rays hit, "
       "image.secondary_rays rays to points of the lights, or a short way into the hemisphere, each ended by "
-      "any hit, and nothing else (docs/scenes.md)");
+      "any hit, and nothing else; gaussians: those of 3D Gaussian splatting, from front to back "
+      "(docs/scenes.md)");
   schema.text("image.rays", "",
               "rays: a NumPy file (.npy), relative to the configuration (with --set: to the current "
               "directory), of float32 or float64 with a row for each ray: origin (3), least distance, "
@@ -217,6 +218,8 @@ void declare_frame_keys(sim::Schema& schema) {
   schema.real("image.occlusion_distance", 0.1, {0.0, 1e6}, "",
               "occlusion: how far the rays reach, as a part of the largest side of the scene's box; 0: "
               "without end");
+  schema.integer("image.nearest_hits", 16, {1, processors::program::max_nearest_hits}, "",
+                 "gaussians: how many a ray finds in order before it is traced anew behind the last of them");
   schema.integer("image.max_depth", 5, {1, processors::program::max_ray_depth}, "rays",
                  "longest chain of rays, the eye ray being 1; shadow rays do not count");
   schema.real("image.min_weight", 0.0, {0.0, 1.0}, "",
@@ -261,10 +264,12 @@ void declare_frame_keys(sim::Schema& schema) {
                  "bvh: most that a leaf lists; 6: at most 15, 8_quantised: at most 3");
   schema.integer("structure.bvh_bins", 32, {2, accel::bvh_most_bins}, "",
                  "bvh: intervals of each axis between which the builder looks for a node's best split");
-  schema.choice("structure.instances", "auto", names(scenes::instances_names),
-                "bvh: meshes that nodes of a glTF file share are copied for each, or kept once, in a tree of "
-                "their own below a tree of instances; auto: kept where copies would be more than 4 million "
-                "triangles");
+  schema.choice(
+      "structure.instances", "auto", names(scenes::instances_names),
+      "bvh: meshes that nodes of a glTF file share, and the proxies of Gaussians, are copied for each, "
+      "or kept once, in a tree of their own below a tree of instances; auto: kept where copies would be more "
+      "than 4 million "
+      "triangles");
   schema.boolean("structure.mailboxes", false,
                  "no ray tests a primitive twice: each remembers the last ray, in a word of the node's own");
   schema.section("host_machine", "the computer that runs the simulation");
@@ -412,6 +417,17 @@ void read_any_hit_rays(sim::Config& config, FrameConfig& frame) {
                             "image.integrator");
 }
 
+void read_gaussians(sim::Config& config, FrameConfig& frame) {
+  frame.render.nearest_hits = count(config, "image.nearest_hits");
+  if (frame.render.samples > 1) {
+    frame.render.seed = static_cast<std::uint64_t>(config.integer("image.seed"));
+  }
+  frame.render.shadows = false;
+  frame.open.file.default_light = scenes::DefaultLight::never;
+  config.mark_unused_reason("image", "Gaussians are seen through, one behind the other, and not lit",
+                            "image.integrator");
+}
+
 /// Where the camera is and what it sees, of which given rays know nothing.
 void read_image(sim::Config& config, FrameConfig& frame) {
   frame.open.file.camera = config.text("scene.camera");
@@ -429,6 +445,12 @@ void read_image(sim::Config& config, FrameConfig& frame) {
     read_any_hit_rays(config, frame);
     return;
   }
+  if (integrator == processors::program::Integrator::gaussians) {
+    read_gaussians(config, frame);
+    return;
+  }
+  config.mark_unused_reason("image.nearest_hits", "only \"gaussians\" looks for several hits of a ray",
+                            "image.integrator");
   config.mark_unused_reason("image.secondary_rays", "such rays are those of \"shadow\" and \"occlusion\"",
                             "image.integrator");
   config.mark_unused_reason("image.occlusion_distance", "such rays are those of \"occlusion\"",
@@ -525,9 +547,10 @@ FrameConfig read_frame(sim::Config& config, FrameUse use) {
     }
     read_rays(config, frame);
   } else if (use != FrameUse::timing && use != FrameUse::frames &&
-             processors::program::sends_any_hit_rays(frame.render.integrator)) {
+             (processors::program::sends_any_hit_rays(frame.render.integrator) ||
+              frame.render.integrator == processors::program::Integrator::gaussians)) {
     config.fail("image.integrator",
-                "the study is of whole images; \"shadow\" and \"occlusion\" are for runs, "
+                "the study is of whole images; \"shadow\", \"occlusion\" and \"gaussians\" are for runs, "
                 "sweeps, and the study of frames");
   } else {
     read_image(config, frame);

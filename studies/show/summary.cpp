@@ -73,6 +73,12 @@ void image_lines(Lines out, const run::RunResult& r) {
                    tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
                    processors::program::integrator_names[static_cast<std::size_t>(log.integrator)],
                    tables::grouped(totals.rays[1]));
+  } else if (log.integrator == processors::program::Integrator::gaussians) {
+    fmt::format_to(out, "image         {}, {}{} rays (camera {}, further rounds {})\n",
+                   keys::size_text(r.frame_config.render),
+                   log.samples == 1 ? std::string() : fmt::format("{} samples a pixel, ", log.samples),
+                   tables::grouped(totals.all_rays()), tables::grouped(totals.rays[0]),
+                   tables::grouped(totals.rays[3]));
   } else {
     fmt::format_to(
         out, "image         {}, {}{} rays (camera {}, shadow {}, reflection {}, refraction {}{})\n",

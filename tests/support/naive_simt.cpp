@@ -732,9 +732,11 @@ class NaiveSimt final : public sim::EventHandler {
           read_lines(program_.texel(operand_of(*word), word[1]), reads);
         }
         lane.next += step_words(word);
-        // The ray goes on with the answer to the last hit that it was asked about.
-        if (std::exchange(asks, step_of(*word) == Step::any_hit) &&
-            (lane.next == lane.words.size() || step_of(lane.words[lane.next]) != Step::any_hit)) {
+        // The ray goes on with the answer to the last hit that it was asked about, which a texel may decide.
+        const bool asked = std::exchange(asks, step_of(*word) == Step::any_hit);
+        const Step follows = lane.next == lane.words.size() ? Step::ray : step_of(lane.words[lane.next]);
+        const bool answered = asks ? follows != Step::texel : asked && step_of(*word) == Step::texel;
+        if (answered && follows != Step::any_hit) {
           lane.ray = before;
           lane.goes_back = true;
         }

@@ -13,6 +13,12 @@ namespace {
 
 constexpr const char* given_rays = "the rays of image.rays end at what they hit";
 
+constexpr const char* gaussians = "Gaussians have light of their own, and rays go on through them";
+
+bool looks_through(const PlanFacts& facts) {
+  return facts.render.integrator == processors::program::Integrator::gaussians;
+}
+
 std::string of(std::uint64_t part, std::uint64_t whole, std::string_view what) {
   std::string text = std::to_string(part) + " of " + std::to_string(whole) + " ";
   return text.append(what);
@@ -39,6 +45,8 @@ PlanEntry shadow_rays(const PlanFacts& facts) {
   std::string lights = of(needs.shining_lights, needs.lights, "lights shine");
   if (facts.render.integrator == processors::program::Integrator::rays) {
     choice = {false, false, given_rays};
+  } else if (looks_through(facts)) {
+    choice = {false, false, gaussians};
   } else if (facts.render.integrator == processors::program::Integrator::occlusion) {
     choice = {true, true, "the rays into the hemisphere are all that is asked for"};
   } else if (!facts.render.shadows) {
@@ -62,6 +70,8 @@ PlanEntry spawned_rays(const PlanFacts& facts, PlanItem item, bool needed, std::
   Choice choice;
   if (facts.render.integrator == processors::program::Integrator::rays) {
     choice = {false, false, given_rays};
+  } else if (looks_through(facts)) {
+    choice = {needed, needed, gaussians};
   } else if (facts.render.max_depth <= 1) {
     choice = {false, false, "image.max_depth is 1"};
   } else {

@@ -45,6 +45,13 @@ class Finder {
       needs_.textures.resize(scene_.textures.size());
       return;  // given rays shade nothing
     }
+    if (options_.integrator == processors::program::Integrator::gaussians) {
+      needs_.primitives = in_view_.size();
+      needs_.materials.assign(scene_.materials.size(), true);
+      needs_.textures.resize(scene_.textures.size());
+      needs_.refraction_rays = true;
+      return;  // Gaussians have light of their own
+    }
     find_materials();
     find_rays();
     if (processors::program::sends_any_hit_rays(options_.integrator)) {

@@ -107,7 +107,7 @@ TEST(Holes, TheLogHasEachHitThatWasAskedAbout) {
       std::uint64_t asked = 0;
       for (std::size_t at = 0; at < words.size(); at += step_words(&words[at])) {
         if (step_of(words[at]) == Step::any_hit) {
-          ASSERT_EQ(at, 2 + any_hit_words * asked) << "behind the ray and its only leaf";
+          ASSERT_EQ(at, 2 + 3 * asked) << "behind the ray and its only leaf";
           ++asked;
           const std::uint32_t texture = scene.materials[operand_of(words[at])].cut_out.texture;
           EXPECT_EQ(words[at + 1], make_word(Step::texel, texture));
