@@ -34,7 +34,7 @@ double NearestGaussians::next_round() {
     after_ = hits_.back();
     hits_.clear();
   }
-  return first_ ? 0.0 : std::max(0.0, after_.entry * (1.0 - slack_share) - slack_);
+  return first_ ? 0.0 : std::max(0.0, after_.entry * (1.0 - share_) - slack_);
 }
 
 double NearestGaussians::offer(std::uint32_t gaussian, double limit) {
@@ -45,7 +45,7 @@ double NearestGaussians::offer(std::uint32_t gaussian, double limit) {
   }
   hit.entry = proxy_entry(shape, ray_);
   const bool is_full = full();
-  if (!(hit.entry >= 0.0) || (!first_ && !after_.before(hit)) || (is_full && !hit.before(hits_.back()))) {
+  if (!(hit.entry >= slack_) || (!first_ && !after_.before(hit)) || (is_full && !hit.before(hits_.back()))) {
     return limit;
   }
   const auto before = [](const GaussianHit& a, const GaussianHit& b) { return a.before(b); };
@@ -60,7 +60,7 @@ double NearestGaussians::offer(std::uint32_t gaussian, double limit) {
   } else {
     hits_.insert(at, hit);
   }
-  return full() ? std::min(limit, wider(hits_.back().entry)) : limit;
+  return full() ? std::min(limit, hits_.back().entry * (1.0 + share_) + slack_) : limit;
 }
 
 }  // namespace marti::accel

@@ -5,20 +5,26 @@
 // The rule. A ray meets a Gaussian where it comes within the ellipsoid of alpha 1/255, and in front of it
 // lies the entry of its proxy: the distance at which the ray enters the ten slabs of the icosahedron.
 // Gaussians follow one another by entry, and by number where two are equal. One whose proxy the ray begins in
-// is not met, as its front face lies behind. Both are computed from ray and Gaussian alone, in the scene's
-// coordinates, so the answer depends neither on the structure, nor on the order of tests, nor on whether
-// proxies are kept or copied, nor on k; a proxy that is asked about twice, because the ray meets an edge or
-// two cells list it, gives the same answer twice.
+// is not met, as its front face lies behind, nor one that begins within least_entry(). Entry and least
+// distance are computed from ray and Gaussian alone, in the scene's coordinates, so the answer depends
+// neither on the structure, nor on the order of tests, nor on whether proxies are kept or copied, nor on k. A
+// proxy that is asked about twice, because the ray meets an edge or two cells list it, gives the same answer
+// twice.
 //
-// Why none is missed. The proxies' triangles only find candidates: the front face that the ray enters is
-// tested where the walk has not been cut short. What the kernel reports there is the entry but for rounding.
-// A ray that meets a Gaussian goes through the face at an angle to it whose sine is at least (proxy_inradius
-// - 1) / 2.3 in the ellipsoid's coordinates, because from there it comes within 1 of the centre; the rounding
-// of watertight.h and instance.h, 2^-48 of the distance (2^-42 of the triangle's size, if that is larger) for
-// transforms that turn and scale along axes, moves the entry by no more than 2^8 times as much. So intervals
-// are wider than the entries they stand for by 2^-30 of the distance and of the scene's size.
+// Why none is missed. The proxies' triangles only find candidates: the front face by which the ray enters is
+// tested unless it lies outside the ray's interval, and there the kernel reports the entry but for rounding.
+// A ray that meets a Gaussian goes through that face at an angle whose sine, in the ellipsoid's coordinates,
+// is above (proxy_inradius - 1) / 2.3 > 2^-8: from a point 1 + 2^-6 above the centre's plane, and less
+// than 1.3 from the centre, it comes within 1 of it. A point that is off by e, in the scene, is off by e
+// times the stretch of the Gaussian along the ray at most when both are brought there, and so the entry by
+// 2^8 e stretch. The kernel and transforms that turn and then scale along axes (stretch_of() is 3 at most,
+// instance.h), and the slabs here, are off by less than 2^-46 of the distance, or of the triangle's size. So
+// intervals are wider than the entries they stand for by 2^-38 of distance and scene, times the largest
+// stretch, and at least by 2^-30. Only a Gaussian that is thinner than 2^-40 of its distance could be missed
+// where it is seen edge on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -73,9 +79,9 @@ class NearestGaussians {
  public:
   /// `most`: k, at least 1. `reach`: the scene's size. Keeps a reference.
   NearestGaussians(const scenes::Gaussians& all, std::uint32_t most, double reach)
-      : all_(all), most_(most), slack_(slack_share * reach) {}
+      : all_(all), most_(most), share_(std::max(0x1p-30, 0x1p-38 * all.stretch)), slack_(share_ * reach) {}
 
-  /// A new ray, whose t_max must be infinite.
+  /// A new ray, whose direction must be of unit length and whose t_max infinite.
   void begin(const Ray& ray);
   /// Begins a round: for the Gaussians behind those of the round before. Returns where the ray of the round
   /// begins, its t_min.
@@ -84,6 +90,8 @@ class NearestGaussians {
   /// the distance beyond which no front face matters any more.
   double offer(std::uint32_t gaussian, double limit);
 
+  /// Gaussians that a ray enters before this are not met.
+  [[nodiscard]] double least_entry() const { return slack_; }
   /// The first of the Gaussian's records in a database.
   [[nodiscard]] std::uint32_t record(std::uint32_t gaussian) const { return gaussian * all_.records(); }
   /// Those of the round, the nearest first.
@@ -94,12 +102,10 @@ class NearestGaussians {
   [[nodiscard]] std::uint32_t last() const { return hits_.back().gaussian; }
 
  private:
-  static constexpr double slack_share = 0x1p-30;
-  [[nodiscard]] double wider(double entry) const { return entry * (1.0 + slack_share) + slack_; }
-
   const scenes::Gaussians& all_;
   std::uint32_t most_;
-  double slack_;
+  double share_;  // by how much intervals are wider: of the distance
+  double slack_;  // and in all
   Ray ray_;
   GaussianHit after_;
   bool first_ = true;

@@ -1,5 +1,6 @@
 #include "scenes/gaussian_proxies.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -80,6 +81,15 @@ const std::array<glm::dvec3, proxy_triangles / 2> proxy_normals = {{{1.0, 1.0, 1
                                                                     {-1.0 / golden, 0.0, golden},
                                                                     {golden, 1.0 / golden, 0.0},
                                                                     {golden, -1.0 / golden, 0.0}}};
+
+void Gaussians::add(const Gaussian& gaussian) {
+  const glm::dmat3 rows = glm::transpose(gaussian.inverse);
+  const double x = glm::length(rows[0]);
+  const double y = glm::length(rows[1]);
+  const double z = glm::length(rows[2]);
+  stretch = std::max(stretch, std::max({x, y, z}) / std::min({x, y, z}));
+  shapes.push_back(gaussian);
+}
 
 std::optional<Gaussian> gaussian_of(const Splat& splat) {
   Gaussian gaussian;

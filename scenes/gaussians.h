@@ -4,8 +4,8 @@
 //
 // As in 3D Gaussian ray tracing (Moenne-Loccoz et al., TOG 43(6), 2024, section 4.1) each stands within a
 // proxy of 20 triangles, which encloses the ellipsoid in which its alpha is at least 1/255. All proxies are
-// one icosahedron in other places: its instances where they are kept (the shared bottom level of GRTX, HPCA
-// 2026), else copies. Either way the primitives of Gaussian g are 20 g to 20 g + 19.
+// one icosahedron in other places: its instances where they are kept (the shared lower level of GRTX, Lee et
+// al., HPCA 2026), else copies. Either way the primitives of Gaussian g are 20 g to 20 g + 19.
 #pragma once
 
 #include <array>
@@ -36,11 +36,13 @@ struct Gaussian {
 
 /// All Gaussians of a scene.
 struct Gaussians {
-  std::vector<Gaussian> shapes;
-  unsigned degree = 0;  ///< of their spherical harmonics, up to largest_degree
+  std::vector<Gaussian> shapes;  ///< by add()
+  double stretch = 1.0;          ///< how much longer than another an axis of one is, at most
+  unsigned degree = 0;           ///< of their spherical harmonics, up to largest_degree
   /// Of each Gaussian those of red, then of green, then of blue, terms() each.
   std::vector<float> coefficients;
 
+  void add(const Gaussian& gaussian);
   [[nodiscard]] unsigned terms() const { return (degree + 1) * (degree + 1); }
   /// Records of 64 bytes that each takes in a database of 4-byte words: the first has its inverse, centre,
   /// opacity and three coefficients of degree 0; those of higher degree have 16 coefficients each.

@@ -349,6 +349,9 @@ void export_glb(const Scene& source, const std::filesystem::path& path, const Im
   Scene scene = source;
   tessellate(scene);
   Exporter exporter(scene, path, encode);
+  if (scene.gaussians != nullptr) {
+    exporter.fail("glTF has no Gaussians, only their proxies");
+  }
   std::string content;
   try {
     content = exporter.run();

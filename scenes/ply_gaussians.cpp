@@ -52,7 +52,7 @@ class GaussianReader {
     for (std::uint64_t i = 0; i < vertex_.count; ++i) {
       read_entry(i);
       if (const std::optional<Gaussian> gaussian = gaussian_of(splat(i))) {
-        all_.shapes.push_back(*gaussian);
+        all_.add(*gaussian);
         for (std::size_t k = 0; k < std::size_t{3} * all_.terms(); ++k) {
           all_.coefficients.push_back(static_cast<float>(given_[first_harmonic + k]));
         }

@@ -66,7 +66,7 @@ Scene make_gaussians(std::uint32_t n) {
     splat.deviation = {0.4 * glm::length(a), 0.4 * glm::dot(b, y), 0.0};
     splat.deviation.z = 0.1 * std::min(splat.deviation.x, splat.deviation.y);
     splat.opacity = 0.4 + 0.55 * static_cast<double>(sim::mix(i) >> 32U) * 0x1p-32;
-    all.shapes.push_back(gaussian_of(splat).value());
+    all.add(gaussian_of(splat).value());
     add_colors(z, all);
   }
   scene.gaussians = std::make_shared<const Gaussians>(std::move(all));

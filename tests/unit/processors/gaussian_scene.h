@@ -10,7 +10,8 @@
 
 namespace marti::processors::test {
 
-/// `count` Gaussians about the origin, seen from outside; long ones, flat ones, and some that overlap.
+/// `count` Gaussians about the origin, seen from outside: long ones, flat ones, some that are as thin as a
+/// film, and some that are in the same place as another.
 inline scenes::Scene random_gaussians(std::uint64_t seed, unsigned count, unsigned degree,
                                       scenes::Instances instances) {
   std::mt19937_64 random(seed);
@@ -25,8 +26,9 @@ inline scenes::Scene random_gaussians(std::uint64_t seed, unsigned count, unsign
     splat.deviation = {draw(0.005, 0.3), draw(0.005, 0.2), draw(0.002, 0.1)};
     splat.rotation = {draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)};
     splat.opacity = draw(0.0, 1.0);
+    splat.deviation.z *= random() % 8 == 0 ? 1e-5 : 1.0;
     if (const auto gaussian = scenes::gaussian_of(splat)) {
-      all.shapes.push_back(*gaussian);
+      all.add(random() % 8 == 0 && !all.shapes.empty() ? all.shapes.back() : *gaussian);
       for (unsigned i = 0; i < 3 * all.terms(); ++i) {
         all.coefficients.push_back(static_cast<float>(draw(-0.6, 0.9)));
       }

@@ -113,6 +113,11 @@ TEST(RoundTrip, EveryRecipeIsTheSameSceneInEveryBit) {
     const std::string spec = std::string(kind.name) + ":" + std::to_string(size);
     SCOPED_TRACE(spec);
     const Scene recipe = make_procedural(spec);
+    if (recipe.gaussians != nullptr) {
+      EXPECT_NE(test::user_error_of([&] { export_glb(recipe, path); }).find("glTF has no Gaussians"),
+                std::string::npos);
+      continue;
+    }
     Scene scene = recipe;
     tessellate(scene);
     export_glb(recipe, path);
