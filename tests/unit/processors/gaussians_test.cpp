@@ -86,7 +86,7 @@ glm::vec3 composed_of_all(const scenes::Scene& scene, const accel::Ray& ray, dou
 // that of all of them sorted.
 RC_GTEST_PROP(GaussiansOfRays, ImageIsThatOfAllOfThemSorted, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
-  const auto count = *rc::gen::inRange(1U, 120U);
+  const auto count = *rc::gen::inRange(1U, 70U);
   const auto degree = *rc::gen::inRange(0U, 4U);
   const scenes::Scene copies = random_gaussians(seed, count, degree, copied);
   const scenes::Scene instances = random_gaussians(seed, count, degree, kept);
