@@ -26,8 +26,9 @@
 namespace marti::scenes {
 
 /// Writes `source` to `path`, first under a temporary name beside it, which is then renamed, so that a
-/// failure leaves no partial file. Throws UserError when the scene has no primitive or has Gaussians, when it has textures and
-/// `encode` is empty, when it does not fit the format (4 GiB), or when the file cannot be written.
+/// failure leaves no partial file. Throws UserError when the scene has no primitive or has Gaussians, when it
+/// has textures and `encode` is empty, when it does not fit the format (4 GiB), or when the file cannot be
+/// written.
 void export_glb(const Scene& source, const std::filesystem::path& path, const ImageEncoder& encode = {});
 
 }  // namespace marti::scenes
