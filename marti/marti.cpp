@@ -402,7 +402,8 @@ Sweep sweep(const std::string& config, const std::vector<std::string>& axes, con
         options.share = sweep::share_named(choices.share);
       }
       sim::Config read_config = read(sweep::sweep_schema(), config, choices.settings);
-      const sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes, &meter);
+      sweep::SweepPlan plan = sweep::plan_sweep(read_config, axes, &meter);
+      sweep::leave_out_unfit(plan, options.directory);
       sweep::check_question(plan.question, plan.axes);
       const sweep::SweepReport report =
           sweep::run_sweep(plan, options, keys::read_memory(read_config, sweep::processes_beside()),

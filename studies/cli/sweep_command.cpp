@@ -87,7 +87,8 @@ void sweep_command(const SweepArguments& arguments, void (*print)(const std::str
   if (!arguments.best.empty()) {
     figures::require_direction(arguments.best, "--best: ");
   }
-  const sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
+  sweep::SweepPlan plan = sweep::plan_sweep(config, arguments.axes);
+  sweep::leave_out_unfit(plan, arguments.directory);
   sweep::check_question(plan.question, plan.axes);
   if (arguments.plan_only) {
     if (!options.share || options.share->number == 1) {

@@ -29,9 +29,10 @@ struct SuiteArguments {
 };
 
 /// Times all machines on the scenes that are there, and writes results.sqlite, points.csv, suite.csv,
-/// suite.tex and the page report.html to the directory. Scenes that are missing, or have another checksum,
-/// are named and left out. Throws UserError as the sweep does, for a file without such a table, and when no
-/// scene is there.
+/// suite.tex and the page report.html to the directory. Scenes that are missing, have another checksum or
+/// cannot be read are named and left out, as is a machine on a scene on which it cannot be built; where there
+/// are any, suite_left_out.csv and the page list them. Throws UserError as the sweep does, for a file without
+/// such a table, and when nothing is left to compare.
 void suite_command(const SuiteArguments& arguments, void (*print)(const std::string&));
 
 }  // namespace marti::studies::suite

@@ -24,11 +24,12 @@ using sim::DocumentValue;
 
 constexpr std::size_t most_scenes = 1000;
 constexpr std::size_t longest_name = 60;
+constexpr std::string_view name_of_mean = "geometric mean";  // in the column of scenes
 
 class SuiteReader {
  public:
   explicit SuiteReader(const sim::Config& config)
-      : config_(config), directory_(std::filesystem::absolute(config.name()).parent_path()) {}
+      : config_(config), directory_(std::filesystem::path(config.name()).parent_path()) {}
 
   SuiteFile read() {
     const DocumentValue::Table& section = config_.free_section("suite");
@@ -67,7 +68,12 @@ class SuiteReader {
       texts.fail("name",
                  "must have 1 to 60 printable ASCII characters without quotation marks and backslashes");
     }
-    scene.source = source_of(texts);
+    if (scene.name.starts_with(name_of_mean)) {
+      texts.fail("name", "stands in the table for the mean of all scenes; give the scene another name");
+    }
+    const DocumentValue& source = texts.entry("source").value;
+    scene.source = source.text() != nullptr ? *source.text() : print_in_line(source);
+    from_here_.push_back(from_here(texts, scene));
     scene.line = texts.entry("source").line;
     scene.found = texts.text_or_none("found");
     static_cast<void>(texts.text_or_none("licence"));
@@ -77,22 +83,23 @@ class SuiteReader {
       texts.fail("sha256", "is that of a source that is one file, as 64 of the digits 0 to 9 and a to f");
     }
     look_for(scene, sha256);
-    for (const SuiteScene& other : suite_.scenes) {
-      if (other.name == scene.name || other.source == scene.source) {
-        texts.fail("has the name or the source of another scene, " + other.name);
+    for (std::size_t i = 0; i < suite_.scenes.size(); ++i) {
+      if (suite_.scenes[i].name == scene.name || from_here_[i] == from_here_.back()) {
+        texts.fail("has the name or the source of another scene, " + suite_.scenes[i].name);
       }
     }
     suite_.scenes.push_back(std::move(scene));
   }
 
-  // A text, or what scene.source may be beside it.
-  [[nodiscard]] std::string source_of(const sweep::TableTexts& texts) const {
-    const DocumentValue& value = texts.entry("source").value;
-    const std::string source = value.text() != nullptr ? *value.text() : print_in_line(value);
+  // The source from the current directory. Refuses a list that is none.
+  [[nodiscard]] std::string from_here(const sweep::TableTexts& texts, const SuiteScene& scene) const {
     try {
-      return scenes::source_from(source, directory_);
+      if (scenes::is_scene_list(scene.source)) {
+        static_cast<void>(scenes::read_scene_list(scene.source));
+      }
+      return scenes::source_from(scene.source, directory_);
     } catch (const sim::UserError& error) {
-      texts.fail("source", error.what());
+      texts.fail("source", scene.name + ": " + error.what());
     }
   }
 
@@ -100,7 +107,7 @@ class SuiteReader {
     return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
   }
 
-  static void look_for(SuiteScene& scene, const std::string& sha256) {
+  void look_for(SuiteScene& scene, const std::string& sha256) const {
     std::vector<std::string> sources = {scene.source};
     if (scenes::is_scene_list(scene.source)) {
       sources.clear();
@@ -110,12 +117,12 @@ class SuiteReader {
     }
     for (const std::string& source : sources) {
       std::error_code error;
-      if (scenes::names_a_file(source) && !std::filesystem::exists(source, error)) {
+      if (scenes::names_a_file(source) && !std::filesystem::exists(directory_ / source, error)) {
         scene.missing = "there is no " + sim::shown(source);
         return;
       }
     }
-    if (!sha256.empty() && sim::sha256_of_file(scene.source) != sha256) {
+    if (!sha256.empty() && sim::sha256_of_file(directory_ / scene.source) != sha256) {
       scene.missing = sim::shown(scene.source) + " is another file: its SHA-256 is not " + sim::shown(sha256);
     }
   }
@@ -123,6 +130,7 @@ class SuiteReader {
   const sim::Config& config_;
   std::filesystem::path directory_;
   SuiteFile suite_;
+  std::vector<std::string> from_here_;  // the sources of its scenes, and of the one that is read
 };
 
 std::string quoted(const std::string& text) {
@@ -133,28 +141,42 @@ std::string quoted(const std::string& text) {
   return literal + "'";
 }
 
+// "(VALUES ('a', 0), ('b', 1))": what `columns` gives of each item, with its place.
+template <class Items, class Columns>
+std::string rows_of(const Items& items, const Columns& columns) {
+  std::string rows;
+  std::size_t place = 0;
+  for (const auto& item : items) {
+    rows += fmt::format("{}({}, {})", place == 0 ? "" : ", ", columns(item), place);
+    ++place;
+  }
+  return "(VALUES " + rows + ")";
+}
+
+sweep::QuestionTable left_out_table(const Compared& compared, const sim::Place& place) {
+  const std::string rows = rows_of(compared.left_out, [](const LeftOut& what) {
+    return quoted(what.scene) + ", " + (what.machine.empty() ? "NULL" : quoted(what.machine)) + ", " +
+           quoted(what.reason);
+  });
+  return {
+      "suite_left_out",
+      "Left out",
+      {"SELECT column1 AS scene, column2 AS machine, column3 AS reason FROM " + rows + " ORDER BY column4",
+       place}};
+}
+
 }  // namespace
 
 SuiteFile read_suite(const sim::Config& config) { return SuiteReader(config).read(); }
 
-sweep::Question question_of(const SuiteFile& suite) {
-  std::vector<const SuiteScene*> there;
-  std::string name = "CASE p.\"scene.source\"";
-  for (const SuiteScene& scene : suite.scenes) {
-    if (scene.missing.empty()) {
-      there.push_back(&scene);
-      name += " WHEN " + quoted(scene.source) + " THEN " + quoted(scene.name);
-    }
-  }
-  name += " END";
-  std::string same = "b.\"scene.source\" = p.\"scene.source\" AND ";
-  if (there.size() == 1) {  // what is alike in all points is no column
-    name = quoted(there.front()->name);
-    same.clear();
-  }
-  // Each machine beside the baseline of its scene.
-  const std::string pairs = fmt::format("points p, points b WHERE {}b.point = {} AND p.point <> b.point",
-                                        same, quoted(suite.baseline));
+sweep::Question question_of(const SuiteFile& suite, const Compared& compared) {
+  // Each machine beside the baseline on each scene; p is empty where it has no result.
+  const std::string pairs = fmt::format(
+      "{} AS s CROSS JOIN {} AS m JOIN points b ON b.point = {} AND b.\"scene.source\" = s.column2 LEFT JOIN "
+      "points p ON p.point = m.column1 AND p.\"scene.source\" = s.column2",
+      rows_of(compared.scenes,
+              [](const SuiteScene* scene) { return quoted(scene->name) + ", " + quoted(scene->source); }),
+      rows_of(compared.machines, quoted), quoted(suite.baseline));
   constexpr std::array<std::pair<std::string_view, std::string_view>, 5> shares = {
       {{"speedup", "1.0 * b.end / p.end"},
        {"relative_energy", "1.0 * p.energy / b.energy"},
@@ -165,29 +187,35 @@ sweep::Question question_of(const SuiteFile& suite) {
   std::string means;
   for (const auto& [column, value] : shares) {
     each += fmt::format(", {} AS {}", value, column);
-    // Without a value where a scene has none, so that no mean is of fewer scenes than another.
-    means +=
-        fmt::format(", CASE WHEN COUNT({0}) = COUNT(*) THEN exp(avg(ln({0}))) END AS {1}", value, column);
+    // Without a value where a scene has none, so that no mean of a machine is of fewer scenes than another.
+    means += fmt::format(", CASE WHEN COUNT({0}) = COUNT(p.point) THEN exp(avg(ln({0}))) END AS {1}", value,
+                         column);
   }
+  const std::size_t all = compared.scenes.size();
   const sim::Place place = suite.place;
   sweep::Question question;
   question.asks = "How much faster than " + suite.baseline + " are the machines?";
   question.answer = {
-      fmt::format("SELECT printf('%s is %.2f times as fast as %s in the geometric mean of %d scenes (%.2f to "
-                  "%.2f)', p.point, exp(avg(ln(1.0 * b.end / p.end))), b.point, COUNT(*), MIN(1.0 * b.end / "
-                  "p.end), MAX(1.0 * b.end / p.end)) FROM {} GROUP BY p.point ORDER BY MIN(p.ordinal)",
-                  pairs),
+      fmt::format("SELECT CASE WHEN COUNT(p.point) = 0 THEN m.column1 || ' has a result on none of the "
+                  "scenes' ELSE printf('%s is %.2f times as fast as %s in the geometric mean of %s (%.2f to "
+                  "%.2f)', m.column1, exp(avg(ln(1.0 * b.end / p.end))), b.point, CASE WHEN COUNT(p.point) = "
+                  "{1} THEN '{1} scene{2}' ELSE COUNT(p.point) || ' of {1} scenes' END, MIN(1.0 * b.end / "
+                  "p.end), MAX(1.0 * b.end / p.end)) END FROM {0} GROUP BY m.column2 ORDER BY m.column2",
+                  pairs, all, all == 1 ? "" : "s"),
       place};
   question.tables.push_back(
       {"suite",
        "Machines against " + suite.baseline +
            ": its frame time over theirs, and what they take as shares of it",
-       {fmt::format("SELECT * FROM (SELECT {} AS scene, p.point AS machine{}, p.end / 1e9 AS frame_ms FROM "
-                    "{} ORDER BY "
-                    "p.ordinal) UNION ALL SELECT * FROM (SELECT 'geometric mean', p.point{}, NULL FROM {} "
-                    "GROUP BY p.point ORDER BY MIN(p.ordinal))",
-                    name, each, pairs, means, pairs),
+       {fmt::format("SELECT * FROM (SELECT s.column1 AS scene, m.column1 AS machine{0}, p.end / 1e9 AS "
+                    "frame_ms FROM {1} ORDER BY m.column2, s.column3) UNION ALL SELECT * FROM (SELECT "
+                    "'{2}' || CASE WHEN COUNT(p.point) = {3} THEN '' ELSE ' of ' || COUNT(p.point) || ' of "
+                    "{3} scenes' END, m.column1{4}, NULL FROM {1} GROUP BY m.column2 ORDER BY m.column2)",
+                    each, pairs, name_of_mean, all, means),
         place}});
+  if (!compared.left_out.empty()) {
+    question.tables.push_back(left_out_table(compared, place));
+  }
   return question;
 }
 

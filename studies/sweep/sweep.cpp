@@ -103,16 +103,20 @@ void remove_if_empty(SweepStore* store, const std::filesystem::path& file) {
 }
 
 // Times what the store in `report.store` lacks of the plan; `lock` is the store's, and ends if a signal
-// comes. Takes `parts` into the store first, and says what `say` makes of what is left then.
+// comes. `held` keeps signals waiting since the lock was taken. Takes `parts` into the store first, and says
+// what `say` makes of what is left then.
 void complete(const SweepPlan& plan, const SweepOptions& options, const sim::MemoryBudget& limit,
-              std::optional<StoreLock>& lock, const std::vector<std::filesystem::path>& parts,
+              std::optional<StoreLock>& lock, std::optional<host::SignalsHeld>& held,
+              const std::vector<std::filesystem::path>& parts,
               const std::function<void(const SweepOutlook&)>& say, SweepReport& report) {
   const bool is_new = !is_begun(report.store);
   const auto unlock = [&lock](int /*signal*/) { lock.reset(); };
   std::optional<SweepStore> store;
   WorkDone done;
   // SQLite has files beside a store that is open, which only the last words below close.
-  std::optional<host::SignalsHeld> held(std::in_place);
+  if (!held) {
+    held.emplace();
+  }
   {
     const host::AtSignal unlocked(unlock);
     try {
@@ -215,15 +219,7 @@ bool lock_if_complete(const SweepPlan& plan, const std::filesystem::path& store,
 }  // namespace
 
 SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options) {
-  DoneKeys done;
-  if (!options.directory.empty()) {
-    done.add(options.directory / tables::database_name);
-    for (const std::filesystem::path& part : parts_in(options.directory)) {
-      if (!tables::has_log_or_journal(part)) {  // which it has while it is being written
-        done.add(part);
-      }
-    }
-  }
+  const DoneKeys done = done_in(options.directory);
   const WorkDone work = {
       sim::mapped(plan.machines,
                   [&](const SweepMachine& machine) { return done.machines.contains(machine.key); }),
@@ -245,6 +241,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   // Nobody else may write the store from its check until the tables that follow from it are written.
+  std::optional<host::SignalsHeld> held;
   std::optional<StoreLock> lock;
   if (options.share) {
     DoneKeys done;
@@ -257,9 +254,10 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
                          tables::counted(part.frames.size(), "frame")));
     if (!part.machines.empty()) {
       report.store = part_file(options.directory, options.share->number, options.share->of);
+      std::optional<host::SignalsHeld> held(std::in_place);
       std::optional<StoreLock> part_lock(std::in_place, report.store);
       complete(
-          part, options, limit, part_lock, {}, [](const SweepOutlook&) {}, report);
+          part, options, limit, part_lock, held, {}, [](const SweepOutlook&) {}, report);
     }
     report.seconds = took();
     if (!lock_if_complete(plan, whole, lock)) {
@@ -270,11 +268,12 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       return report;
     }
   } else {
+    held.emplace();  // the lock is a file that a signal would leave
     lock.emplace(whole);
   }
   report.store = whole;
   complete(
-      plan, options, limit, lock, parts_in(options.directory),
+      plan, options, limit, lock, held, parts_in(options.directory),
       [&](const SweepOutlook& outlook) {
         if (!options.share) {
           announce(describe(plan, outlook));
@@ -282,6 +281,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options, const 
       },
       report);
   const host::AtSignal unlocked([&lock](int /*signal*/) { lock.reset(); });
+  held.reset();
   report.seconds = took();
   report.reader = std::make_unique<const SweepReader>(report.store);
   sim::write_file(report.points, tables::csv_of(points_table(*report.reader)));

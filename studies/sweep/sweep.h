@@ -23,6 +23,12 @@ struct SweepOptions {
   std::optional<Share> share{};     ///< times only this part of the machines
 };
 
+/// Leaves out of a plan that leaves points out those whose machine, or the machine they are measured against,
+/// cannot be run on its scene: what is known only of a structure and a work log. Each machine without a
+/// result in `directory`, which may be empty, is run on a small image of its frame; on given rays or a saved
+/// log none is. Throws UserError when no point is left, or the machine of [sweep.compare] is at fault.
+void leave_out_unfit(SweepPlan& plan, const std::filesystem::path& directory);
+
 /// What is known of the sweep before it runs, including what its store holds already. Writes nothing. Throws
 /// UserError when the store cannot be read.
 [[nodiscard]] SweepOutlook look_ahead(const SweepPlan& plan, const SweepOptions& options);

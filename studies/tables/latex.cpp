@@ -18,6 +18,8 @@ std::string escaped(std::string_view text) {
       latex += std::string("\\") + c;
     } else if (c == '\\') {
       latex += "\\textbackslash{}";
+    } else if (c == '<' || c == '>' || c == '|') {  // other glyphs in TeX's own encoding of fonts
+      latex += c == '<' ? "\\textless{}" : c == '>' ? "\\textgreater{}" : "\\textbar{}";
     } else if (c == '~' || c == '^') {
       latex += std::string("\\") + c + "{}";
     } else {
@@ -35,7 +37,7 @@ std::string cell_text(const Cell& cell) {
     return fmt::format("{:.2f}", *real);
   }
   const auto* const whole = std::get_if<std::int64_t>(&cell);
-  return whole == nullptr ? "" : std::to_string(*whole);
+  return whole == nullptr ? "--" : std::to_string(*whole);
 }
 
 }  // namespace

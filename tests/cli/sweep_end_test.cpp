@@ -150,6 +150,25 @@ TEST(SweepEnd, ASignalLeavesNothingOfSqliteBesideTheStore) {
   EXPECT_GT(interrupted, 0);
 }
 
+// A signal while a sweep or a suite takes its lock leaves no lock, and is answered.
+TEST(SweepEnd, ASignalAtOnceLeavesNoLock) {
+  const TemporaryDirectory directory;
+  const fs::path config = directory.path() / "sweep.toml";
+  write(config, small_sweep);
+  for (int round = 0; round < 48; ++round) {
+    const fs::path out = directory.path() / std::to_string(round);
+    Started program(arguments(config, out, {"--threads", "1"}), directory.path() / "said");
+    while (!fs::exists(out / "results.sqlite.lock") && !program.ended()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(20));
+    }
+    program.send(SIGTERM);
+    if (program.wait() != 0) {
+      EXPECT_EQ(names_in(out), std::set<std::string>{"results.sqlite"});
+      EXPECT_NE(read(directory.path() / "said").find("marti: interrupted: "), std::string::npos);
+    }
+  }
+}
+
 TEST(SweepEnd, TwoAtOnceOnOneStoreAreRefused) {
   const TemporaryDirectory directory;
   const fs::path config = directory.path() / "sweep.toml";

@@ -52,12 +52,13 @@ Outcome read_outcome(const sim::Config& config, sim::WorkMeter* meter) {
 class Planner {
  public:
   Planner(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter,
-          std::span<const AxisArgument> more)
+          std::span<const AxisArgument> more, Unfit unfit)
       : config_(config),
         meter_(meter),
         prices_(keys::read_prices(config)),
         filter_(config.text("sweep.filter")),
-        skip_invalid_(config.boolean("sweep.skip_invalid")),
+        skip_scenes_(unfit == Unfit::left_out),
+        skip_invalid_(config.boolean("sweep.skip_invalid") || skip_scenes_),
         table_(read_sweep_table(config, axes, more)),
         points_(config, table_),
         used_(config.schema().keys().size()) {
@@ -66,6 +67,7 @@ class Planner {
 
   SweepPlan plan() {
     plan_.file = config_.name();
+    plan_.leaves_out = skip_invalid_;
     plan_.prices = keys::read_given_prices(config_);
     plan_.question = read_question(config_);
     name_axes();
@@ -211,7 +213,7 @@ class Planner {
       if (const Base& base = bases_.at(group); base.machine) {
         enter_point(points[i], point, *base.machine);
       } else {
-        skip(points[i], *base.error, true);
+        skip(points[i], *base.error, !base.is_read);
       }
     }
   }
@@ -219,29 +221,42 @@ class Planner {
   void skip(std::uint64_t point, const sim::UserError& error, bool of_base) {
     if (!skip_invalid_) {
       throw sim::UserError(error.what() + std::string(of_base ? " (the base of the point " : " (the point ") +
-                               sim::shown(points_.text(point)) +
+                               sim::shown(text_of(point)) +
                                "; sweep.skip_invalid = true leaves out such points)",
                            error);
     }
-    plan_.skipped.push_back({points_.text(point), error.what() + std::string(of_base ? " (its base)" : "")});
+    plan_.skipped.push_back(
+        {text_of(point), error.what() + std::string(of_base ? " (its base)" : ""), points_.values(point)});
   }
 
+  [[nodiscard]] std::string text_of(std::uint64_t point) const {
+    return point_text(config_.schema(), plan_.axes, points_.values(point));
+  }
+
+  struct Entered {
+    std::optional<std::size_t> machine;
+    std::optional<sim::UserError> error;  // of the scene, if that may be left out
+  };
+
   // A scene that is a file may be at fault, of which the point says the name.
-  std::size_t enter_machine(std::uint64_t point, ReadPoint& read) {
+  Entered enter_machine(std::uint64_t point, ReadPoint& read) {
     try {
-      return found_.enter(read);
+      return {found_.enter(read), {}};
     } catch (const sim::UserError& error) {
-      throw sim::UserError(error.what() + (" (the point " + sim::shown(points_.text(point))) + ")", error);
+      if (skip_scenes_) {
+        return {{}, error};
+      }
+      throw sim::UserError(error.what() + (" (the point " + sim::shown(text_of(point))) + ")", error);
     }
   }
 
   void enter_base(std::uint64_t point, std::uint64_t group, Outcome base) {
     if (!base.read) {
-      bases_.emplace(group, Base{std::nullopt, base.error});
+      bases_.emplace(group, Base{{std::nullopt, base.error}, false});
       return;
     }
     note_use(base.read->config);
-    bases_.emplace(group, Base{enter_machine(point, *base.read), {}});
+    bases_.emplace(group, Base{enter_machine(point, *base.read), true});
   }
 
   void enter_point(std::uint64_t number, ReadPoint& read, std::size_t base) {
@@ -249,15 +264,14 @@ class Planner {
       config_.take_reasons(read.config);
     }
     note_use(read.config);
+    const Entered entered = enter_machine(number, read);
+    if (!entered.machine) {
+      skip(number, *entered.error, false);
+      return;
+    }
     SweepPoint point;
-    point.values.reserve(plan_.axes.size());
-    if (points_.named()) {
-      point.values.emplace_back(points_.name(number));
-    }
-    for (const std::size_t key : points_.keys()) {
-      point.values.push_back(points_.value(number, key));
-    }
-    point.machine = enter_machine(number, read);
+    point.values = points_.values(number);
+    point.machine = *entered.machine;
     point.base = base;
     point.cost = keys::cost_of(prices_, read.machine);
     found_.used_by_point(point.machine, plan_.points.size());
@@ -325,15 +339,15 @@ class Planner {
   sim::WorkMeter* meter_;
   keys::Prices prices_;
   std::string filter_;
+  bool skip_scenes_;
   bool skip_invalid_;
   SweepTable table_;
   SweepPoints points_;
   std::vector<bool> used_;         // by any machine
   std::vector<bool> shapes_base_;  // of each axis
   // What the points of a group are measured against: a machine, or why it cannot be built.
-  struct Base {
-    std::optional<std::size_t> machine;
-    std::optional<sim::UserError> error;
+  struct Base : Entered {
+    bool is_read = false;  // its configuration is that of a machine
   };
   std::unordered_map<std::uint64_t, Base> bases_;
   MachineList found_;
@@ -356,8 +370,8 @@ std::uint64_t plan_bytes(std::uint64_t points, std::size_t axes) {
 }
 
 SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes, sim::WorkMeter* meter,
-                     std::span<const AxisArgument> more) {
-  return Planner(config, axes, meter, more).plan();
+                     std::span<const AxisArgument> more, Unfit unfit) {
+  return Planner(config, axes, meter, more, unfit).plan();
 }
 
 }  // namespace marti::studies::sweep

@@ -62,8 +62,9 @@ struct SweepDirection {
 
 /// A point that is left out because its machine cannot be built.
 struct SkippedPoint {
-  std::string point;   ///< "cache.ways = 8, ..."
-  std::string reason;  ///< names file, line and key
+  std::string point;                 ///< "cache.ways = 8, ..."
+  std::string reason;                ///< names file, line and key
+  std::vector<sim::Value> values{};  ///< one for each of SweepPlan::axes
 };
 
 struct SweepPlan {
@@ -80,10 +81,18 @@ struct SweepPlan {
   std::optional<std::size_t> compare;  ///< the machine that all are compared with
   std::optional<keys::Prices> prices;  ///< if any is given; they rank what would help
   Question question;                   ///< of [question]
+  std::string study{};                 ///< the study whose sweep this is; empty: that of `marti sweep`
 
   std::vector<SweepDirection> directions;  ///< all are crossed, the last changes fastest
-  std::vector<SkippedPoint> skipped;       ///< only with sweep.skip_invalid
+  bool leaves_out = false;                 ///< points that cannot be run, instead of refusing all
+  std::vector<SkippedPoint> skipped;       ///< only then
   std::vector<std::string> notes;          ///< about the input, each naming file and line
+};
+
+/// What becomes of a point that cannot be run.
+enum class Unfit : std::uint8_t {
+  by_key,   ///< sweep.skip_invalid says whether one whose machine cannot be built is left out
+  left_out  ///< it is left out, also one whose scene cannot be read
 };
 
 /// Reads [sweep] and [prices] of a configuration of sweep_schema() and makes its points. Machines are read on
@@ -92,9 +101,10 @@ struct SweepPlan {
 /// be built, of the first such point in order, with what the point gives; for a plan beyond
 /// host_machine.memory_limit, before its points are read. `meter` may stop the planning and is that of its
 /// frames; null: nobody waits. `more`: axes like those of the command line, whose steps know where they are
-/// from.
+/// from. What is refused only once a scene is traced is found by leave_out_unfit() (sweep/sweep.h).
 [[nodiscard]] SweepPlan plan_sweep(sim::Config& config, std::span<const std::string> axes = {},
-                                   sim::WorkMeter* meter = nullptr, std::span<const AxisArgument> more = {});
+                                   sim::WorkMeter* meter = nullptr, std::span<const AxisArgument> more = {},
+                                   Unfit unfit = Unfit::by_key);
 
 /// What is known of a plan before it runs: what its store holds already, and what it needs.
 struct SweepOutlook {

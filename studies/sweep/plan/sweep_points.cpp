@@ -1,6 +1,7 @@
 #include "studies/sweep/plan/sweep_points.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace marti::studies::sweep {
 
@@ -48,15 +49,34 @@ sim::Value SweepPoints::value(std::uint64_t point, std::size_t key) const {
   return declared.is_list ? sim::Value(print_values(declared, values)) : values.front();
 }
 
-std::string SweepPoints::text(std::uint64_t point) const {
-  std::string text = named_ ? "point = \"" + name(point) + "\"" : "";
-  for (const std::size_t key : keys_) {
-    const sim::Key& declared = config_.schema().keys()[key];
-    const sim::Value value = this->value(point, key);
-    text += (text.empty() ? "" : ", ") + declared.name + " = " +
-            (declared.is_list ? std::get<std::string>(value) : print_value(declared.type, value));
+std::vector<sim::Value> SweepPoints::values(std::uint64_t point) const {
+  std::vector<sim::Value> values;
+  values.reserve(keys_.size() + (named_ ? 1 : 0));
+  if (named_) {
+    values.emplace_back(name(point));
   }
-  return text;
+  for (const std::size_t key : keys_) {
+    values.push_back(value(point, key));
+  }
+  return values;
+}
+
+std::string point_text(const sim::Schema& schema, std::span<const std::string> axes,
+                       std::span<const sim::Value> values) {
+  std::string name;
+  std::string settings;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const std::optional<std::size_t> key = schema.find(axes[axis]);
+    if (!key) {
+      name = '"' + std::get<std::string>(values[axis]) + '"';  // of a named point
+      continue;
+    }
+    const sim::Key& declared = schema.keys()[*key];
+    settings +=
+        (settings.empty() ? "" : ", ") + declared.name + " = " +
+        (declared.is_list ? std::get<std::string>(values[axis]) : print_value(declared.type, values[axis]));
+  }
+  return name + (name.empty() || settings.empty() ? "" : " with ") + settings;
 }
 
 }  // namespace marti::studies::sweep

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,8 @@ class SweepPoints {
   /// The value of any key there: what an axis gives it, else what the file does, else the default. A list is
   /// a text.
   [[nodiscard]] sim::Value value(std::uint64_t point, std::size_t key) const;
-  /// "point = \"small\", cache.size = \"16 KiB\"".
-  [[nodiscard]] std::string text(std::uint64_t point) const;
+  /// Of all axes: the name of a named point, and what its keys have.
+  [[nodiscard]] std::vector<sim::Value> values(std::uint64_t point) const;
 
  private:
   const sim::Config& config_;
@@ -44,5 +45,10 @@ class SweepPoints {
   std::vector<std::size_t> axis_of_key_;  // of each key of the schema; table_.axes.size() for none
   bool named_ = false;
 };
+
+/// A point of these axes (SweepPlan::axes) for people: "cache.ways = 8, machine.nodes = 2", of a named point
+/// "\"small\" with cache.size = \"16 KiB\"".
+[[nodiscard]] std::string point_text(const sim::Schema& schema, std::span<const std::string> axes,
+                                     std::span<const sim::Value> values);
 
 }  // namespace marti::studies::sweep

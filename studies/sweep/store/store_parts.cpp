@@ -13,6 +13,7 @@
 #include "studies/sweep/store/store_sums.h"
 #include "studies/sweep/store/sweep_reader.h"
 #include "studies/sweep/store/sweep_store.h"
+#include "studies/tables/result_directory.h"
 
 namespace marti::studies::sweep {
 
@@ -98,6 +99,19 @@ void DoneKeys::add(const fs::path& store) {
   check_whole(connection, store);
   add_keys(connection, "SELECT key FROM machines WHERE id IN (SELECT machine FROM results)", machines);
   add_keys(connection, "SELECT key FROM frames WHERE id IN (SELECT frame FROM frame_results)", frames);
+}
+
+DoneKeys done_in(const fs::path& directory) {
+  DoneKeys done;
+  if (!directory.empty()) {
+    done.add(directory / tables::database_name);
+    for (const fs::path& part : parts_in(directory)) {
+      if (!tables::has_log_or_journal(part)) {  // which it has while it is being written
+        done.add(part);
+      }
+    }
+  }
+  return done;
 }
 
 void SweepStore::merge(const fs::path& part) {

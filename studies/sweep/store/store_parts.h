@@ -26,4 +26,8 @@ struct DoneKeys {
   void add(const std::filesystem::path& store);
 };
 
+/// What the store in the directory and its parts have between them, but for parts that are being written.
+/// Nothing for an empty name.
+[[nodiscard]] DoneKeys done_in(const std::filesystem::path& directory);
+
 }  // namespace marti::studies::sweep

@@ -193,6 +193,9 @@ void enter_provenance(tables::SqliteConnection& connection, const SweepPlan& pla
   tables::SqliteStatement insert(connection, tables::insert_sql("provenance", 2));
   insert.run({"version", version});
   insert.run({"axes", sim::joined(plan.axes)});
+  if (!plan.study.empty()) {
+    insert.run({"study", plan.study});
+  }
   // They rank what would help, so that other prices give another plan.
   insert.run({"prices", plan.prices ? keys::text_of(*plan.prices) : std::string()});
   insert.run({"points", std::to_string(plan.points.size())});

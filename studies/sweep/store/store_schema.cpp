@@ -173,6 +173,20 @@ void check_store_version(tables::SqliteConnection& connection, const std::filesy
   }
 }
 
+void check_study(tables::SqliteConnection& connection, const std::filesystem::path& file,
+                 const std::string& study) {
+  const std::string found =
+      connection.value<std::string>("SELECT value FROM provenance WHERE what = 'study'").value_or("");
+  if (found != study) {
+    const auto command = [](const std::string& name) {
+      return name.empty() ? std::string("`marti sweep`") : "`marti study " + name + "`";
+    };
+    throw sim::UserError(file.string() + ": is there already, of " + command(found) +
+                         ", and a directory holds the results of one command, not also those of " +
+                         command(study) + "; give another directory");
+  }
+}
+
 void create_store(tables::SqliteConnection& connection) {
   connection.execute("PRAGMA application_id = " + std::to_string(application) +
                      "; PRAGMA user_version = " + std::to_string(format));

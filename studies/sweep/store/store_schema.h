@@ -32,6 +32,10 @@ void check_store_format(tables::SqliteConnection& connection, const std::filesys
 /// Throws UserError unless this program may add results to the store: it must be of this version.
 void check_store_version(tables::SqliteConnection& connection, const std::filesystem::path& file);
 
+/// Throws UserError unless the store is of this study (SweepPlan::study), beside which its tables stand.
+void check_study(tables::SqliteConnection& connection, const std::filesystem::path& file,
+                 const std::string& study);
+
 /// Makes the tables that stay. Within a transaction.
 void create_store(tables::SqliteConnection& connection);
 

@@ -31,6 +31,7 @@ SweepStore::SweepStore(const std::filesystem::path& file, const SweepPlan& plan,
     check_store_format(*connection_, file);
     check_store_version(*connection_, file);
     check_whole(*connection_, file);
+    check_study(*connection_, file, plan.study);
   }
   begin_log();
   connection_->transact([&] {

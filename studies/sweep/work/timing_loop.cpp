@@ -38,18 +38,6 @@ struct ReadyBatch {
   std::vector<std::shared_ptr<const StrippedLog>> stripped;  // for each of MachineBatch::ways, or none at all
 };
 
-std::string name_of(const SweepMachine& machine) {
-  std::string name;
-  for (const SettingsPart& part : machine.settings) {
-    for (const sim::EffectiveValue& value : *part) {
-      if (value.given) {
-        name += (name.empty() ? "" : ", ") + value.key + " = " + value.value;
-      }
-    }
-  }
-  return name;
-}
-
 class Loop {
  public:
   Loop(const SweepPlan& plan, const WorkDone& done, const sim::MemoryBudget& memory, SweepResults& results)
@@ -194,11 +182,10 @@ class Loop {
           return timed;
         });
       } catch (const sim::UserError& error) {
-        throw sim::UserError(
-            std::string(error.what()) + " (the machine with " + sim::shown(name_of(machine)) + ")", error);
+        throw sim::UserError(error.what() + asked_by(plan_, number), error);
       } catch (const std::bad_alloc&) {
-        throw sim::UserError("the computer ran out of memory (while it timed the machine with " +
-                             sim::shown(name_of(machine)) + ")");
+        throw sim::UserError("the computer ran out of memory while it timed a machine" +
+                             asked_by(plan_, number));
       }
       results_.timed(number, row, sim::thread_cpu_nanoseconds() - begin);
     }
