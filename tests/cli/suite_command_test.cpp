@@ -216,6 +216,21 @@ TEST_F(SuiteCommand, ASweepSaysWhichPointASceneCannotHave) {
   EXPECT_TRUE(says(sweep(config, out, "--set sweep.skip_invalid=true"), "all of it was there already"));
 }
 
+// Whether a memory is large enough is known of the tree that is laid out in it.
+TEST_F(SuiteCommand, ASweepLeavesOutWhatIsRefusedOnceTheTreeIsThere) {
+  write(config,
+        "scene.source = \"teapot:16\"\nimage = { width = 8, height = 8 }\nmemory.model = \"dram\"\n"
+        "[sweep.axes]\ndram.rows = [1, 32768]\n");
+  const Outcome refused = sweep(config, out);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(says(refused, "suite.toml:5: dram.rows: scene and image take "));
+  EXPECT_TRUE(says(refused, "(the point dram.rows = 1 on teapot:16)"));
+  const Outcome left = sweep(config, out, "--set sweep.skip_invalid=true");
+  EXPECT_EQ(left.status, 0) << left.output;
+  EXPECT_TRUE(says(left, "points        1, 1 more cannot be built"));
+  EXPECT_TRUE(says(left, "suite.toml:5: dram.rows: scene and image take "));
+}
+
 // Two folders with the same files give the same bytes, and what one has timed the other need not.
 TEST_F(SuiteCommand, DoesNotDependOnItsFolder) {
   const auto run_in = [&](const std::string& name) {

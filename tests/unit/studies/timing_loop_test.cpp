@@ -99,7 +99,9 @@ TEST(TimingLoop, SaysWhichMachineHasNoRoom) {
   } catch (const sim::UserError& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("lower machine.nodes"), std::string::npos) << message;
-    EXPECT_NE(message.find("(the machine with machine.nodes = 3, "), std::string::npos) << message;
+    EXPECT_NE(message.find("(the point "), std::string::npos) << message;
+    EXPECT_NE(message.find(", machine.nodes = 3, "), std::string::npos) << message;
+    EXPECT_TRUE(message.ends_with(" on teapot:2)")) << message;
   }
 }
 
