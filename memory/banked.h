@@ -40,7 +40,7 @@ class Banked : public Interconnect {
   /// transaction: of a read that waited for another port's line the rest is not set.
   virtual void late_read(const LateAccess& read) = 0;
   /// Posts the event of the site's reply class for a port's read whose data are ready at `ready`.
-  void post_reply(std::uint32_t port, sim::Ticks ready) {
+  [[gnu::always_inline]] void post_reply(std::uint32_t port, sim::Ticks ready) {
     site_.engine.post_in_order(sim::Event::make(ready, site_.reply_class, site_.first_component + port));
   }
   /// When a write is done, given when its bank has served it.

@@ -22,7 +22,7 @@ class EventCalendar {
   static_assert(most_days <= NumberSet::most);
 
   /// `days` is a power of two, at most most_days.
-  explicit EventCalendar(std::uint32_t days) : days_(days), mask_(days - 1), busy_(days) {}
+  explicit EventCalendar(std::uint32_t days) : days_(days), mask_(days - 1) {}
 
   static constexpr std::size_t bytes_a_day = 24;
   /// Bytes of host memory for each event that shares its day with others; tables grow by doubling.

@@ -43,6 +43,7 @@ class EventQueue {
     calendar_ = EventCalendar(days_for(events));
     later_years_ = LaterYears(years_for(events));
     set_shift(0);
+    many_expected_ = events > many / 2;
   }
   /// reserve() for events of components below `components` that seldom have more than one each.
   void reserve_for(std::size_t components) {
@@ -77,10 +78,10 @@ class EventQueue {
 
   /// Whether no event is pending where not next_is_in_tree() and not next_is_in_order().
   [[nodiscard]] bool has_no_other() const { return first_.order == Event::never().order; }
-  /// Whether so many events are pending that the host's caches may not hold all that belongs to them. Those
-  /// of the heap, of which there are few, are not counted.
+  /// Whether so many events are pending, and were expected by reserve(), that the host's caches may not hold
+  /// all that belongs to them. Those of the heap, of which there are few, are not counted.
   [[nodiscard]] bool many_pending() const {
-    return lane_.size() + calendar_.size() + later_years_.size() > many;
+    return many_expected_ && lane_.size() + calendar_.size() + later_years_.size() > many;
   }
 
   /// Calls later(event) for some events that will be popped soon unless earlier ones are pushed, and
@@ -239,6 +240,7 @@ class EventQueue {
   Event first_ = Event::never();       // the earliest of calendar and heap
   Ticks last_ = 0;                     // time of the event popped last
   __extension__ using Sum = unsigned __int128;
+  bool many_expected_ = false;
   Sum ahead_ = 0;  // sum over the events pushed since the last tuning: ticks from the event popped last
   std::uint64_t pushed_ = 0;
   std::uint64_t tuned_at_ = tuned_after;

@@ -20,10 +20,10 @@ namespace marti::sim {
 class LaterYears {
  public:
   static constexpr std::uint32_t most = 4096;
+  static_assert(most <= NumberSet::most);
 
   /// `years` is a power of two, at most `most`. With 1 there are none that take events.
-  explicit LaterYears(std::uint32_t years)
-      : mask_(years - 1), with_events_(years), last_block_(years, none) {}
+  explicit LaterYears(std::uint32_t years) : mask_(years - 1), last_block_(years, none) {}
 
   /// Bytes of host memory for each year beside its events.
   static constexpr std::size_t bytes_a_year = 512;

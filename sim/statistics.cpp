@@ -92,7 +92,7 @@ std::optional<double> Moments::variance() const {
 
 void LogHistogram::merge(const LogHistogram& other) {
   if (other.buckets_.size() > buckets_.size()) {
-    buckets_.resize(other.buckets_.size());
+    add_bucket(other.buckets_.size() - 1);
   }
   for (std::size_t i = 0; i < other.buckets_.size(); ++i) {
     ensure(!__builtin_add_overflow(buckets_[i], other.buckets_[i], &buckets_[i]),
@@ -109,7 +109,10 @@ std::int64_t LogHistogram::count() const {
   return count;
 }
 
-void LogHistogram::fail_negative() { throw InternalError("a histogram takes no negative sample"); }
+void LogHistogram::add_bucket(std::size_t bucket) {
+  ensure(bucket <= bucket_of(INT64_MAX), "a histogram takes no negative sample");
+  buckets_.resize(bucket + 1);
+}
 
 std::int64_t LogHistogram::lowest_of(std::size_t bucket) {
   if (bucket < 16) {

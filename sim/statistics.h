@@ -222,7 +222,7 @@ class LogHistogram {
   [[gnu::always_inline]] void add(std::int64_t sample) {
     const std::size_t bucket = bucket_of(sample);
     if (bucket >= buckets_.size()) [[unlikely]] {
-      add_buckets(bucket + 1);
+      add_bucket(bucket);
     }
     ++buckets_[bucket];
     maximum_ = std::max(maximum_, sample);
@@ -253,10 +253,8 @@ class LogHistogram {
   /// The buckets that are not empty, in ascending order.
   [[nodiscard]] std::vector<Bucket> buckets() const;
 
+  /// Of a negative sample one that no other has.
   static std::size_t bucket_of(std::int64_t sample) {
-    if (sample < 0) [[unlikely]] {
-      fail_negative();
-    }
     const auto value = static_cast<std::uint64_t>(sample);
     // The bits below the leading four. Without a branch: whether a sample is small is often not predictable.
     const auto dropped = static_cast<unsigned>(std::bit_width(value | 8U)) - 4;
@@ -268,8 +266,8 @@ class LogHistogram {
   friend bool operator==(const LogHistogram&, const LogHistogram&) = default;
 
  private:
-  [[noreturn]] static void fail_negative();
-  [[gnu::noinline]] void add_buckets(std::size_t size) { buckets_.resize(size); }
+  // Makes room for a bucket, or fails for that of a negative sample.
+  [[gnu::noinline]] void add_bucket(std::size_t bucket);
 
   std::vector<std::int64_t> buckets_;  // up to the last non-empty one
   std::int64_t maximum_ = 0;

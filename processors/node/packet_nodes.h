@@ -46,6 +46,7 @@ class PacketNodes : public NodeArray {
         cursors_(input.config.all_nodes()),
         statistics_(input.config.all_nodes()),
         ports_(input.config.ports_of_node()),
+        one_cluster_(input.config.clusters == 1),
         meter_(input.sample == nullptr ? 0 : input.packets.size(), input.config.all_nodes()),
         writes_(std::size_t{input.config.all_nodes()} * input.config.write_buffer),
         late_(machine::writes_done_later(input.config) ? input.config.all_nodes() : 0) {
@@ -61,9 +62,7 @@ class PacketNodes : public NodeArray {
   }
 
   // One cluster is the common case, and a division at every event would cost measurable time.
-  std::uint32_t cluster_of(std::uint32_t node) const {
-    return interconnects_.size() == 1 ? 0 : node / input_.config.nodes;
-  }
+  std::uint32_t cluster_of(std::uint32_t node) const { return one_cluster_ ? 0 : node / input_.config.nodes; }
   // The first of the node's ports, which also posts its writes.
   std::uint32_t port_of(std::uint32_t node) const {
     return (node - cluster_of(node) * input_.config.nodes) * ports_;
@@ -275,6 +274,7 @@ class PacketNodes : public NodeArray {
   sim::Ticks end_ = 0;
   sim::Ticks last_write_done_ = 0;  // of the write posted last
   std::uint32_t ports_;             // of each node
+  bool one_cluster_;
 
  private:
   // One cluster's ports, with port numbers turned into node numbers.

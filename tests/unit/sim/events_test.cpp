@@ -150,8 +150,8 @@ TEST(EventLane, TakesWhatIsNearlyInOrderAndRefusesTheRest) {
 
 TEST(NumberSet, FindsTheNextMember) {
   std::mt19937_64 random(1);
-  for (const std::uint32_t size : {1U, 64U, 65U, 4096U, 5000U, NumberSet::most}) {
-    NumberSet set(size);
+  for (const std::uint32_t size : {1U, 64U, 65U, 4000U, NumberSet::most}) {
+    NumberSet set;
     std::set<std::uint32_t> plain;
     for (int step = 0; step < 2000; ++step) {
       const auto number = static_cast<std::uint32_t>(random() % size);
