@@ -36,6 +36,15 @@ std::string type_of(const Key& key) {
   return (key.is_list ? "list of " : "") + std::string(name_of(key.type));
 }
 
+/// What values the key takes: "integer in cycles, 1 to 64"; of a choice and a boolean the values alone.
+std::string facts_of(const Key& key) {
+  const std::string range = print_range(key);
+  if (key.type == ValueType::choice && !key.is_list) {
+    return range;
+  }
+  return type_of(key) + (key.unit.empty() ? "" : " in " + key.unit) + (range.empty() ? "" : ", " + range);
+}
+
 /// `text` broken at blanks into lines of at most `width` columns, each after `indent` blanks.
 std::string wrap(std::string_view text, std::size_t indent, std::size_t width) {
   std::string wrapped;
@@ -99,15 +108,8 @@ std::string list_keys_as_text(const Schema& schema, int width, std::string_view 
         }
       },
       [&](const Key& key) {
-        std::string facts = type_of(key);
-        if (!key.unit.empty()) {
-          facts += " in " + key.unit;
-        }
-        if (const std::string range = print_range(key); !range.empty()) {
-          facts += ", " + range;
-        }
         listing += "  " + key.name + " = " + print_values(key, key.default_value) + "\n";
-        listing += wrap(facts, 6, columns);
+        listing += wrap(facts_of(key), 6, columns);
         listing += wrap(key.meaning, 6, columns);
       });
   return listing;
@@ -125,12 +127,11 @@ std::string list_keys_as_markdown(const Schema& schema) {
         if (const std::string meaning = meaning_of(schema, section); !meaning.empty()) {
           listing += meaning + "\n\n";
         }
-        listing += "| key | type | default | unit | range | meaning |\n|---|---|---|---|---|---|\n";
+        listing += "| key | default | values | meaning |\n|---|---|---|---|\n";
       },
       [&](const Key& key) {
-        listing += "| `" + key.name + "` | " + type_of(key) + " | `" +
-                   escape_cell(print_values(key, key.default_value)) + "` | " + key.unit + " | " +
-                   escape_cell(print_range(key)) + " | " + escape_cell(key.meaning) + " |\n";
+        listing += "| `" + key.name + "` | `" + escape_cell(print_values(key, key.default_value)) + "` | " +
+                   escape_cell(facts_of(key)) + " | " + escape_cell(key.meaning) + " |\n";
       });
   return listing;
 }

@@ -26,7 +26,7 @@ Formula all_rays() {
   for (std::size_t kind = 1; kind < ray_figures.size(); ++kind) {
     sum = sum + own(rays_of(ray_figures.at(kind)));
   }
-  return sum;
+  return sum.named("all_rays");
 }
 
 // Adds figures to a list.
@@ -73,12 +73,13 @@ std::size_t loss_of(processors::cost::Activity activity) {
 // The time that all nodes spend on this part more than the base, in frame times. The time of nodes without
 // work is no imbalance but a part of its own, the last one.
 Formula lost(std::size_t loss) {
-  const Formula idle_nodes = own("time_without_work") - base("time_without_work");
+  const Formula idle_nodes =
+      (own("time_without_work") - base("time_without_work")).named("more_time_without_work");
   std::optional<Formula> sum;
   for (std::size_t i = 0; i < processors::cost::activities; ++i) {
     if (loss_of(static_cast<processors::cost::Activity>(i)) == loss) {
       const std::string time = "time_" + std::string(processors::cost::activity_names[i]);
-      const Formula more = own(time) - base(time);
+      const Formula more = (own(time) - base(time)).named("more_" + time);
       sum = sum ? *sum + more : more;
     }
   }
@@ -119,7 +120,7 @@ Formula all_steps() {
                                       "texels", "cuts", "passes", "any_hits"}) {
     sum = sum + own("steps_" + std::string(step));
   }
-  return sum;
+  return sum.named("all_steps");
 }
 
 // What the time of links and data buses is spent on, each as a share of the whole. Data take whole beats, of

@@ -7,7 +7,9 @@
 namespace marti::studies::figures {
 
 struct Formula::Node {
-  char operation = 0;  // 'f': a figure, 'c': a constant, 'm': the smaller of both, else as written
+  // 'f': a figure, 'c': a constant, 'm': the smaller of both, 'n': `a` under the name `figure`, else as
+  // written
+  char operation = 0;
   std::string figure{};
   Whose whose = Whose::own;
   double constant = 0.0;
@@ -21,8 +23,19 @@ struct Formula::Node {
   [[nodiscard]] std::optional<double> value(const LookUp& look_up) const;
   [[nodiscard]] std::string sql() const;
   [[nodiscard]] std::string text() const;
+  void add_names(std::map<std::string, std::string>& names) const {
+    if (operation == 'n') {
+      names.emplace(figure, a->text());
+    }
+    for (const Node* part : {a.get(), b.get()}) {
+      if (part != nullptr) {
+        part->add_names(names);
+      }
+    }
+  }
   [[nodiscard]] bool is_relative() const {
-    return operation == 'f' ? whose != Whose::own : a != nullptr && (a->is_relative() || b->is_relative());
+    return operation == 'f' ? whose != Whose::own
+                            : (a != nullptr && a->is_relative()) || (b != nullptr && b->is_relative());
   }
 };
 
@@ -32,6 +45,9 @@ std::optional<double> Formula::Node::value(const LookUp& look_up) const {
   }
   if (operation == 'c') {
     return constant;
+  }
+  if (operation == 'n') {
+    return a->value(look_up);
   }
   const std::optional<double> left = a->value(look_up);
   const std::optional<double> right = b->value(look_up);
@@ -60,6 +76,9 @@ std::string Formula::Node::sql() const {
   if (operation == 'c') {
     return fmt::format("{:.1f}", constant);
   }
+  if (operation == 'n') {
+    return a->sql();
+  }
   if (operation == 'm') {
     return fmt::format("MIN({}, {})", a->sql(), b->sql());
   }
@@ -73,6 +92,9 @@ std::string Formula::Node::text() const {
   }
   if (operation == 'c') {
     return fmt::format("{:g}", constant);
+  }
+  if (operation == 'n') {
+    return figure;
   }
   if (operation == 'm') {
     return fmt::format("min({}, {})", a->text(), b->text());
@@ -94,11 +116,17 @@ Formula::Formula(double constant)
 Formula::Formula(char operation, const Formula& a, const Formula& b)
     : node_(std::make_shared<Node>(Node{.operation = operation, .a = a.node_, .b = b.node_})) {}
 
+Formula Formula::named(std::string_view name) const {
+  return Formula(std::make_shared<Node>(Node{.operation = 'n', .figure = std::string(name), .a = node_}));
+}
+
 std::optional<double> Formula::value(const LookUp& figure) const { return node_->value(figure); }
 
 std::string Formula::sql() const { return node_->sql(); }
 
 std::string Formula::text() const { return node_->text(); }
+
+void Formula::add_names(std::map<std::string, std::string>& names) const { node_->add_names(names); }
 
 bool Formula::is_relative() const { return node_->is_relative(); }
 

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace marti::studies::figures {
 
@@ -31,6 +33,9 @@ class Formula {
   /// The smaller of two.
   friend Formula least(const Formula& a, const Formula& b) { return {'m', a, b}; }
 
+  /// The same formula, which text() shows as `name`.
+  [[nodiscard]] Formula named(std::string_view name) const;
+
   using LookUp = std::function<std::optional<double>(std::string_view figure, Whose whose)>;
   /// std::nullopt where a figure has no value or a denominator is 0. All arithmetic is that of doubles, from
   /// the leaves on, as in sql(): both give equal bits.
@@ -39,12 +44,15 @@ class Formula {
   [[nodiscard]] std::string sql() const;
   /// For people: "frame_time of the base / frame_time".
   [[nodiscard]] std::string text() const;
+  /// Adds the names that text() shows, each with what it stands for.
+  void add_names(std::map<std::string, std::string>& names) const;
   /// Whether it reads figures of another machine.
   [[nodiscard]] bool is_relative() const;
 
  private:
   struct Node;
   Formula(char operation, const Formula& a, const Formula& b);
+  explicit Formula(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
   std::shared_ptr<const Node> node_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,28 +56,73 @@ std::string common_description(const figures::FigureEntry& figure) {
              : figure.description;
 }
 
-// Figures with the same meaning of other parts, which their names tell, stand in one line.
+// A row of a table of figures: figures with the same meaning of other parts, which their names tell, share
+// it.
+struct Row {
+  std::string names;
+  std::string facts;    // unit, which is better and so on: all but names and meaning
+  std::string formula;  // of the first; empty for counted figures
+  std::string meaning;
+  bool same_formula = true;
+};
+
+std::vector<Row> rows_of(std::span<const figures::FigureEntry> figures) {
+  std::vector<Row> rows;
+  for (const figures::FigureEntry& figure : figures) {
+    Row row{"`" + figure.name + "`",
+            figure.formula ? fmt::format("{} | {}", figure.unit, better_of(figure))
+                           : fmt::format("{} | {} | {}", figure.unit, merge_of(figure), better_of(figure)),
+            figure.formula ? "`" + figure.formula->text() + "`" : "", common_description(figure)};
+    const auto known = std::ranges::find_if(
+        rows, [&row](const Row& other) { return other.facts == row.facts && other.meaning == row.meaning; });
+    if (known == rows.end()) {
+      rows.push_back(std::move(row));
+    } else {
+      known->names += ", " + row.names;
+      known->same_formula = known->same_formula && known->formula == row.formula;
+    }
+  }
+  return rows;
+}
+
+// What stands before the first colon of a meaning: the part of the machine that a figure is of.
+std::string part_of(const Row& row) {
+  const std::size_t colon = row.meaning.find(": ");
+  return colon == std::string::npos ? "" : row.meaning.substr(0, colon);
+}
+
+// A part of which several rows in a row are is said once, before them.
 void list_counted(std::string_view title, std::span<const figures::FigureEntry> figures, std::string& text) {
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "\n## {}\n\n| figure | unit | merge | better | what |\n|---|---|---|---|---|\n", title);
-  struct Row {
-    std::string names;
-    std::string what;  // all but the names
-  };
-  std::vector<Row> rows;
-  for (const figures::FigureEntry& figure : figures) {
-    std::string what = fmt::format("{} | {} | {} | {}", figure.unit, merge_of(figure), better_of(figure),
-                                   common_description(figure));
-    const auto known = std::ranges::find(rows, what, &Row::what);
-    if (known == rows.end()) {
-      rows.push_back({"`" + figure.name + "`", std::move(what)});
-    } else {
-      known->names += ", `" + figure.name + "`";
+  const std::vector<Row> rows = rows_of(figures);
+  std::string said;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string part = part_of(rows[i]);
+    if (!part.empty() && part != said && i + 1 < rows.size() && part_of(rows[i + 1]) == part) {
+      fmt::format_to(out, "| *{}:* |\n", part);
+      said = part;
+    } else if (part != said) {
+      said.clear();
+    }
+    fmt::format_to(out, "| {} | {} | {} |\n", rows[i].names, rows[i].facts,
+                   rows[i].meaning.substr(said.empty() ? 0 : said.size() + 2));
+  }
+}
+
+// What the names stand for that formulas have.
+std::string names_in_formulas() {
+  std::map<std::string, std::string> names;
+  for (const figures::FigureEntry& figure : figures::derived_figures()) {
+    figure.formula->add_names(names);
+  }
+  std::string text;
+  for (const auto& [name, what] : names) {
+    if (!name.starts_with("more_")) {
+      text += fmt::format("`{}` is `{}`.\n", name, what);
     }
   }
-  for (const Row& row : rows) {
-    fmt::format_to(out, "| {} | {} |\n", row.names, row.what);
-  }
+  return text + "`more_time_...` is the time less that of the base.\n";
 }
 
 }  // namespace
@@ -84,6 +130,7 @@ void list_counted(std::string_view title, std::span<const figures::FigureEntry> 
 std::string list_figures_as_text() {
   std::string text = "name, unit, how parts make it, which is better, what it is\n\n";
   list_text("Machine, derived", figures::derived_figures(), text);
+  text += names_in_formulas();
   list_text("\nMachine, counted", figures::counted_figures(), text);
   list_text("\nFrame", run::frame_figures(), text);
   return text;
@@ -110,12 +157,12 @@ std::string list_figures_as_markdown() {
       "everywhere.\n"
       "\n## Derived figures of a machine\n\n"
       "Ratios are computed from merged figures, never stored. The *base* is the machine that the speed-up is "
-      "measured against:\nin a run it is the same machine with one node.\n\n"
-      "| figure | unit | better | formula | what |\n|---|---|---|---|---|\n";
+      "measured against:\nin a run it is the same machine with one node. In formulas\n" +
+      names_in_formulas() + "\n| figure | unit | better | formula | what |\n|---|---|---|---|---|\n";
   const auto out = std::back_inserter(text);
-  for (const figures::FigureEntry& figure : figures::derived_figures()) {
-    fmt::format_to(out, "| `{}` | {} | {} | `{}` | {} |\n", figure.name, figure.unit, better_of(figure),
-                   figure.formula->text(), figure.description);
+  for (const Row& row : rows_of(figures::derived_figures())) {
+    fmt::format_to(out, "| {} | {} | {}{} | {} |\n", row.names, row.facts, row.formula,
+                   row.same_formula ? "" : " and so on", row.meaning);
   }
   list_counted("Counted figures of a machine", figures::counted_figures(), text);
   list_counted("Figures of a frame", run::frame_figures(), text);
