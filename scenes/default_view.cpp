@@ -43,9 +43,12 @@ void add_default_light(Scene& scene, const FileOptions& options) {
   constexpr const char* added = "a directional one over the camera's shoulder and by ambient light";
   const bool lacks_light = scene.lights.empty() && !scene.lights_are_all;
   const bool emits = lacks_light && has_emitters(scene);
-  const bool lights_paths = emits || scene.background != glm::dvec3(0.0);
-  const bool dark = lacks_light && !(lights_paths && options.emitters_light);
+  const bool sky = options.sky_lights && scene.background != glm::dvec3(0.0);
+  const bool dark = lacks_light && !sky && !(emits && options.emitters_light);
   if (options.default_light == DefaultLight::never) {
+    if (dark && options.emitters_light) {
+      scene.notes.emplace_back("The scene has no light: nothing is lit, and no ray looks for a light.");
+    }
     return;
   }
   if (options.default_light == DefaultLight::always) {

@@ -54,7 +54,9 @@ struct FileOptions {
   /// automatic: only a scene that has no light and does not say that none is missing (Scene::lights_are_all).
   DefaultLight default_light = DefaultLight::automatic;
   Instances instances = Instances::copied;
-  bool emitters_light = false;  ///< triangles that emit light and a sky count as lights: paths find them
+  bool emitters_light =
+      false;                ///< triangles that emit light count as lights: paths and shadow rays find them
+  bool sky_lights = false;  ///< so does a sky: paths find it
   /// Refuses what else is replaced with a note because many files are so: docs/scenes.md lists it.
   bool strict = false;
   /// If set, images are not decoded: textures have their size and their file, but no texels (see

@@ -68,6 +68,10 @@ void MergedInstances::finish(Scene& scene) {
   if (instances_.empty()) {
     return;
   }
+  if (!scene.quadrics.empty()) {
+    scene.notes.push_back("Replaced: " + std::to_string(scene.quadrics.size()) +
+                          " spheres, cylinders and cones, by triangles, because instances are kept.");
+  }
   tessellate(scene);
   const auto fixed = static_cast<std::uint32_t>(scene.triangles.size());
   begin_instances(scene);

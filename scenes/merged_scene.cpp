@@ -8,6 +8,7 @@
 #include "scenes/append_geometry.h"
 #include "scenes/camera_file.h"
 #include "scenes/default_view.h"
+#include "scenes/pbrt.h"
 
 namespace marti::scenes {
 
@@ -46,6 +47,10 @@ void MergedScene::open(std::string_view spec, const std::filesystem::path& base_
       without_triangles_.push_back(name);
       return;
     }
+  }
+  if (spec.ends_with(".pbrt")) {
+    const bool mirrored = std::find(part.notes.begin(), part.notes.end(), mirrored_note) != part.notes.end();
+    (mirrored ? mirrored_ : not_mirrored_).push_back(name);
   }
   if (placement != nullptr) {
     if (part.gaussians != nullptr) {
@@ -113,6 +118,10 @@ AnimatedScene MergedScene::finish(std::string name) && {
     scene_.notes.push_back("Left out: " + std::to_string(without_triangles_.size()) +
                            " files without triangles: " + names +
                            (without_triangles_.size() > most_names ? ", ..." : "") + ".");
+  }
+  if (!mirrored_.empty() && !not_mirrored_.empty()) {
+    scene_.notes.push_back(mirrored_.front() + " is mirrored, and " + not_mirrored_.front() +
+                           " is not: they fit together where this one has scale = [-1, 1, 1].");
   }
   set_view(scene_, whole_.options());
   return AnimatedScene(std::move(scene_), std::move(use_));

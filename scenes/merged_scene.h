@@ -46,6 +46,7 @@ class MergedScene {
   std::size_t parts_ = 0;
   FileUse use_;
   std::vector<std::string> without_triangles_;
+  std::vector<std::string> mirrored_, not_mirrored_;  // files of pbrt
 };
 
 }  // namespace marti::scenes

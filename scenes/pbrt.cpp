@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <deque>
 #include <map>
 #include <new>
@@ -16,13 +14,13 @@
 #include <glm/common.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
-#include <glm/trigonometric.hpp>
 
 #include "scenes/append_geometry.h"
 #include "scenes/default_view.h"
 #include "scenes/merged_instances.h"
 #include "scenes/open.h"
+#include "scenes/pbrt_attributes.h"
+#include "scenes/pbrt_camera.h"
 #include "scenes/pbrt_color.h"
 #include "scenes/pbrt_light.h"
 #include "scenes/pbrt_material.h"
@@ -54,6 +52,13 @@ struct State {
   glm::dvec3 emission{0.0};
   bool reversed = false;
   bool at_end = false;  // transforms are those at the end of a motion, which is left out
+  Attributes attributes;
+};
+
+/// What is there again at the end of an attribute or an object.
+struct Begun {
+  State state;
+  std::string begun;  // "FILE:LINE: the AttributeBegin"
 };
 
 /// The geometry between ObjectBegin and ObjectEnd, in the coordinates of the world.
@@ -66,6 +71,8 @@ struct Object {
 
 /// Thrown when copies of objects become so many that they should be kept.
 struct ManyCopies {};
+/// Thrown when round shapes have been replaced for the sake of instances, and there are none.
+struct NothingKept {};
 
 class Reader {
  public:
@@ -79,9 +86,11 @@ class Reader {
     while (const std::optional<std::string> name = text_.next()) {
       statement(*name);
     }
-    if (!states_.empty() || object_ != nullptr) {
-      file_.fail(object_ != nullptr ? "an ObjectBegin has no ObjectEnd"
-                                    : "an AttributeBegin has no AttributeEnd");
+    if (!states_.empty()) {
+      throw sim::UserError(states_.back().begun + " has no end");
+    }
+    if (object_ != nullptr) {
+      file_.fail("an ObjectBegin has no ObjectEnd");
     }
     return finish();
   }
@@ -96,12 +105,12 @@ class Reader {
         text_.fail("more than " + std::to_string(most_states) +
                    " statements AttributeBegin lie in each other");
       }
-      states_.push_back(state_);
+      states_.push_back({state_, text_.place() + ": the " + name});
     } else if (name == "AttributeEnd" || name == "TransformEnd") {
       if (states_.empty()) {
         text_.fail(name + " without its begin");
       }
-      state_ = states_.back();
+      state_ = states_.back().state;
       states_.pop_back();
     } else if (name == "Include" || name == "Import") {
       text_.include(text_.text());
@@ -140,7 +149,7 @@ class Reader {
       if (object_ != nullptr) {
         text_.fail("an object lies in another one");
       }
-      states_.push_back(state_);
+      states_.push_back({state_, text_.place() + ": the " + name});
       file_.take_memory(bytes_of_name + sizeof(Object), "its names take");
       object_ = &objects_.emplace_back();
       object_of_name_[text_.text()] = object_;
@@ -150,7 +159,7 @@ class Reader {
       }
       object_->bytes = host_bytes(object_->scene);
       object_ = nullptr;
-      state_ = states_.back();
+      state_ = states_.back().state;
       states_.pop_back();
     } else if (name == "ObjectInstance") {
       add_instance(text_.text());
@@ -163,17 +172,17 @@ class Reader {
   bool material_statement(const std::string& name) {
     if (name == "Material") {
       std::string type = text_.text();
-      state_.material = materials_.add(std::move(type), text_.parameters());
+      state_.material = materials_.add(std::move(type), parameters_of("material"));
     } else if (name == "MakeNamedMaterial") {
       const std::string material = text_.text();
-      materials_.add_named(material, text_.parameters());
+      materials_.add_named(material, parameters_of("material"));
     } else if (name == "NamedMaterial") {
       state_.material = materials_.named(text_.text());
     } else if (name == "Texture") {
       std::string texture = text_.text();
       static_cast<void>(text_.text());  // of floats or spectra
       std::string kind = text_.text();
-      materials_.add_texture(std::move(texture), std::move(kind), text_.parameters());
+      materials_.add_texture(std::move(texture), std::move(kind), parameters_of("texture"));
     } else {
       return false;
     }
@@ -183,32 +192,38 @@ class Reader {
   void other_statement(const std::string& name) {
     if (name == "Shape") {
       const std::string kind = text_.text();
-      add_shape(kind, text_.parameters());
+      add_shape(kind, parameters_of("shape"));
     } else if (name == "LightSource") {
       const std::string kind = text_.text();
-      add_light_source(kind, text_.parameters());
+      add_light_source(kind, parameters_of("light"));
     } else if (name == "AreaLightSource") {
       static_cast<void>(text_.text());  // all are diffuse
-      const Parameters parameters = text_.parameters();
+      const Parameters parameters = parameters_of("light");
       state_.emission = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) *
                         parameters.number("scale", 1.0, 0.0, largest_emission);
       state_.emission = glm::min(state_.emission, glm::dvec3(largest_emission));
+      left_out_.replaced["area lights of one side, by ones of both"] +=
+          parameters.text("twosided") == "true" ? 0U : 1U;
       parameters.leave_out_rest(left_out_);
     } else if (name == "Camera") {
       const std::string kind = text_.text();
-      set_camera(kind, text_.parameters());
+      static_cast<void>(placement_of(state_.transform, text_));
+      const glm::dmat4 to_world = glm::affineInverse(state_.transform);
+      named_transforms_["camera"] = to_world;
+      camera_.set(kind, placement_of(to_world, text_), text_.parameters(), left_out_);
     } else if (name == "Film") {
       static_cast<void>(text_.text());
-      const Parameters parameters = text_.parameters();
-      film_width_ = parameters.number("xresolution", 1280.0, 1.0, 1e9);
-      film_height_ = parameters.number("yresolution", 720.0, 1.0, 1e9);
+      camera_.set_film(text_.parameters());
     } else if (name == "MediumInterface") {
       while (text_.text_if_given()) {
       }
-    } else if (name == "MakeNamedMedium" || name == "Attribute") {
+    } else if (name == "Attribute") {
+      const std::string made = text_.text();
+      state_.attributes.add(made, text_.parameters(), file_);
+    } else if (name == "MakeNamedMedium") {
       static_cast<void>(text_.text());
       static_cast<void>(text_.parameters());
-      left_out_.features[name == "Attribute" ? "statements Attribute" : "media"] += 1;
+      left_out_.features["media"] += 1;
     } else if (name == "ColorSpace") {
       static_cast<void>(text_.text());
     } else if (name == "TransformTimes") {
@@ -223,23 +238,33 @@ class Reader {
     }
   }
 
+  /// The parameters of a statement that makes this, those of attributes among them.
+  Parameters parameters_of(std::string_view made) {
+    Parameters parameters = text_.parameters();
+    state_.attributes.append_to(parameters, made);
+    return parameters;
+  }
+
   void add_shape(const std::string& kind, const Parameters& parameters) {
-    std::optional<Scene> shape = scene_of_shape(kind, parameters, file_, text_, left_out_);
-    if (!shape) {
-      return;
-    }
     CutOut cut_out = materials_.cut_out_of(parameters);
-    parameters.leave_out_rest(left_out_);
     if (cut_out.everywhere()) {
       left_out_.features["shapes that are cut out as a whole"] += 1;
       return;
     }
-    if (cut_out.texture == no_texture || shape->uvs.empty()) {
-      left_out_.features["cut-outs of shapes without texture coordinates"] += cut_out.asks() ? 1U : 0U;
+    if (!cut_out.asks()) {
       cut_out = {};
     }
-    const std::optional<std::uint32_t> material =
-        materials_.in_scene(state_.material, state_.emission, cut_out);
+    std::optional<std::uint32_t> material = materials_.in_scene(state_.material, state_.emission, cut_out);
+    const bool textured = material && (cut_out.asks() || scene_.materials[*material].texture != no_texture);
+    std::optional<Scene> shape = scene_of_shape(kind, parameters, textured, file_, text_, left_out_);
+    if (!shape) {
+      return;
+    }
+    parameters.leave_out_rest(left_out_);
+    if (cut_out.asks() && shape->uvs.empty()) {
+      left_out_.features["cut-outs of shapes without texture coordinates"] += 1;
+      material = materials_.in_scene(state_.material, state_.emission, {});
+    }
     if (!material) {
       left_out_.features["surfaces of media"] += 1;
       return;
@@ -253,6 +278,7 @@ class Reader {
     if (instances_ == Instances::kept && !shape->quadrics.empty()) {
       left_out_.replaced["spheres and cylinders, by triangles, because instances are kept"] +=
           shape->quadrics.size();
+      replaced_round_ = true;
     }
     if (shines || instances_ == Instances::kept) {
       tessellate(*shape);  // paths find triangles that emit light, and instances are of triangles
@@ -345,56 +371,18 @@ class Reader {
     scene_.lights.push_back(alone.lights.front());
   }
 
-  void set_camera(const std::string& kind, const Parameters& parameters) {
-    const glm::dmat4 to_world = glm::affineInverse(state_.transform);
-    static_cast<void>(placement_of(state_.transform, text_));
-    named_transforms_["camera"] = to_world;
-    if (kind != "perspective") {
-      left_out_.replace("cameras " + kind.substr(0, 40) + ", by one that sees all of the scene",
-                        parameters.place() + ": the camera " + in_quotes(kind) + " is not supported");
-      return;
-    }
-    for (const char* const window : {"screenwindow", "frameaspectratio"}) {
-      left_out_.features["windows of cameras"] += parameters.find(window) != nullptr ? 1U : 0U;
-    }
-    const Placement placement = placement_of(to_world, text_);
-    camera_ = View{placement, parameters.number("fov", 90.0, 1e-3, 179.9)};
-    parameters.leave_out_rest(left_out_);
-  }
-
-  /// The camera as this program has them: one of the right-handed world.
-  void use_camera() {
-    const glm::dmat3& axes = camera_->placement.linear;
-    Camera& camera = scene_.camera;
-    camera.eye = camera_->placement.offset;
-    camera.at = camera.eye + unit_or_zero(axes[2]);
-    camera.up = unit_or_zero(axes[1]);
-    const double half = std::tan(glm::radians(camera_->fov) / 2.0);
-    camera.vertical_fov =
-        2.0 * std::atan(film_height_ > film_width_ ? half * film_height_ / film_width_ : half);
-    // Its x axis is to the right when forward, up and it are right-handed; else the world looks mirrored.
-    if (glm::determinant(axes) > 0.0) {
-      Placement mirrored;
-      mirrored.linear[0][0] = -1.0;
-      place(mirrored, file_.path().string(), scene_);
-      scene_.notes.emplace_back("The scene is mirrored in x, as its camera, which is left-handed, sees it.");
-    }
-    std::array<char, 80> text{};
-    static_cast<void>(std::snprintf(text.data(), text.size(),
-                                    "Its image is made for a film of %.0f x %.0f pixels.", film_width_,
-                                    film_height_));
-    scene_.notes.emplace_back(text.data());
-  }
-
   AnimatedScene finish() {
     add_kept();
+    if (replaced_round_ && scene_.instances.empty()) {
+      throw NothingKept();
+    }
     if (scene_.triangles.empty() && scene_.quadrics.empty()) {
       file_.fail_empty();
     }
     scene_.name = file_.path().filename().string();
-    scene_.framed = !camera_;
-    if (camera_) {
-      use_camera();
+    scene_.framed = !camera_.given();
+    if (camera_.given()) {
+      camera_.use(file_.path(), scene_);
     }
     set_view(scene_, file_.options());
     note_instances(scene_);
@@ -406,11 +394,6 @@ class Reader {
     return AnimatedScene(std::move(scene_), std::move(use));
   }
 
-  struct View {
-    Placement placement;  // of the camera in the world
-    double fov = 90.0;    // degrees, along the shorter side of the film
-  };
-
   static constexpr std::size_t most_lights = 65536;
 
   const SourceFile& file_;
@@ -420,15 +403,14 @@ class Reader {
   Text text_;
   PbrtMaterials materials_;
   State state_;
-  std::vector<State> states_;
+  std::vector<Begun> states_;
   std::map<std::string, glm::dmat4> named_transforms_;
   std::deque<Object> objects_;  // of which a later one may take the name of an earlier one
   std::map<std::string, Object*> object_of_name_;
   Object* object_ = nullptr;  // that is being read
   std::uint64_t copied_ = 0;  // triangles of objects
-  std::optional<View> camera_;
-  double film_width_ = 1280.0;
-  double film_height_ = 720.0;
+  bool replaced_round_ = false;
+  FilmCamera camera_;
 };
 
 }  // namespace
@@ -448,6 +430,8 @@ AnimatedScene open_pbrt(const std::filesystem::path& path, const FileOptions& op
     return read(options.instances);
   } catch (const pbrt::ManyCopies&) {
     return read(Instances::kept);
+  } catch (const pbrt::NothingKept&) {
+    return read(Instances::copied);
   }
 }
 

@@ -63,6 +63,34 @@ void turn_to_normals(Scene& mesh) {
   }
 }
 
+/// The coordinates that pbrt gives meshes without any: every face has the whole texture, a triangle the half
+/// of it. No two faces share a vertex then. Of two triangles that are one face, the second has the other
+/// half.
+void set_default_coordinates(Scene& mesh, const SourceFile& file) {
+  file.require_memory(mesh.triangles.size() * 3 * (2 * sizeof(glm::dvec3) + sizeof(glm::dvec2)),
+                      "its texture coordinates take");
+  Scene apart;
+  std::uint32_t polygon = 0xffffffffU;
+  for (Triangle& triangle : mesh.triangles) {
+    const bool second = triangle.polygon == std::exchange(polygon, triangle.polygon);
+    const std::array<glm::dvec2, 3> coordinates = {
+        turned_coordinates(0.0, 0.0), second ? turned_coordinates(1.0, 1.0) : turned_coordinates(1.0, 0.0),
+        second ? turned_coordinates(0.0, 1.0) : turned_coordinates(1.0, 1.0)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& vertex = triangle.vertex[k];
+      apart.positions.push_back(mesh.positions[vertex]);
+      if (!mesh.normals.empty()) {
+        apart.normals.push_back(mesh.normals[vertex]);
+      }
+      apart.uvs.push_back(coordinates[k]);
+      vertex = static_cast<std::uint32_t>(apart.positions.size() - 1);
+    }
+  }
+  mesh.positions = std::move(apart.positions);
+  mesh.normals = std::move(apart.normals);
+  mesh.uvs = std::move(apart.uvs);
+}
+
 /// A mesh of faces of so many corners: three, or the four of a bilinear patch, row by row.
 Scene mesh_of(const Parameters& parameters, std::size_t corners, bool with_normals) {
   Scene mesh;
@@ -103,9 +131,6 @@ Scene mesh_of(const Parameters& parameters, std::size_t corners, bool with_norma
       mesh.triangles.push_back({{corner[0], corner[3], corner[2]}, 0, polygon});
     }
   }
-  if (!mesh.normals.empty()) {
-    turn_to_normals(mesh);
-  }
   return mesh;
 }
 
@@ -130,9 +155,6 @@ Scene ply_mesh(const Parameters& parameters, const SourceFile& file, Text& text)
   geometry.uvs = std::move(mesh.uvs);
   geometry.triangles = std::move(mesh.triangles);
   geometry.polygons = mesh.polygons;
-  if (!geometry.normals.empty()) {
-    turn_to_normals(geometry);
-  }
   return geometry;
 }
 
@@ -177,21 +199,30 @@ Scene disk(const Parameters& parameters, LeftOut& left_out) {
 
 }  // namespace
 
-std::optional<Scene> scene_of_shape(const std::string& kind, const Parameters& parameters,
+std::optional<Scene> scene_of_shape(const std::string& kind, const Parameters& parameters, bool textured,
                                     const SourceFile& file, Text& text, LeftOut& left_out) {
+  const auto finished = [&](Scene mesh) {
+    if (textured && mesh.uvs.empty()) {
+      set_default_coordinates(mesh, file);
+    }
+    if (!mesh.normals.empty()) {
+      turn_to_normals(mesh);
+    }
+    return mesh;
+  };
   if (kind == "trianglemesh") {
-    return mesh_of(parameters, 3, true);
+    return finished(mesh_of(parameters, 3, true));
   }
   if (kind == "bilinearmesh") {
-    return mesh_of(parameters, 4, true);
+    return finished(mesh_of(parameters, 4, true));
   }
   if (kind == "loopsubdiv") {
     left_out.replace("subdivision surfaces, by their control meshes",
                      parameters.place() + ": subdivision surfaces are not supported");
-    return mesh_of(parameters, 3, false);
+    return finished(mesh_of(parameters, 3, false));
   }
   if (kind == "plymesh") {
-    return ply_mesh(parameters, file, text);
+    return finished(ply_mesh(parameters, file, text));
   }
   if (kind == "sphere" || kind == "cylinder") {
     return curved(kind == "sphere" ? QuadricKind::sphere : QuadricKind::cylinder, parameters, left_out);

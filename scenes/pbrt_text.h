@@ -35,6 +35,9 @@ class Parameters {
   Parameters(std::vector<Parameter> all, std::string place)
       : all_(std::move(all)), place_(std::move(place)) {}
 
+  [[nodiscard]] const std::vector<Parameter>& all() const { return all_; }
+  /// Adds parameters behind the others, which come first where names are equal.
+  void append(const std::vector<Parameter>& more) { all_.insert(all_.end(), more.begin(), more.end()); }
   /// The first parameter with this name; nullptr if no parameter has it.
   [[nodiscard]] const Parameter* find(std::string_view name) const;
   /// Bytes of host memory that they take.

@@ -440,6 +440,7 @@ void read_image(sim::Config& config, FrameConfig& frame) {
   const processors::program::Integrator integrator = frame.render.integrator;
   const bool path = integrator == processors::program::Integrator::path;
   frame.open.file.emitters_light = processors::program::asks_emitters(integrator);
+  frame.open.file.sky_lights = path;
   frame.render.samples = count(config, "image.samples");
   if (processors::program::sends_any_hit_rays(integrator)) {
     read_any_hit_rays(config, frame);

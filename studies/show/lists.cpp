@@ -119,10 +119,10 @@ std::string names_in_formulas() {
   std::string text;
   for (const auto& [name, what] : names) {
     if (!name.starts_with("more_")) {
-      text += fmt::format("`{}` is `{}`.\n", name, what);
+      text += fmt::format("- `{}` is `{}`.\n", name, what);
     }
   }
-  return text + "`more_time_...` is the time less that of the base.\n";
+  return text + "- `more_time_...` is the time less that of the base.\n";
 }
 
 }  // namespace
@@ -157,7 +157,7 @@ std::string list_figures_as_markdown() {
       "everywhere.\n"
       "\n## Derived figures of a machine\n\n"
       "Ratios are computed from merged figures, never stored. The *base* is the machine that the speed-up is "
-      "measured against:\nin a run it is the same machine with one node. In formulas\n" +
+      "measured against:\nin a run it is the same machine with one node. In formulas\n\n" +
       names_in_formulas() + "\n| figure | unit | better | formula | what |\n|---|---|---|---|---|\n";
   const auto out = std::back_inserter(text);
   for (const Row& row : rows_of(figures::derived_figures())) {

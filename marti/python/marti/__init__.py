@@ -380,12 +380,19 @@ def _text(value: Any) -> str:
         return os.fspath(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if value is None or isinstance(value, (bytes, Mapping)):
-        raise TypeError(f"no setting can be {value!r}: give a text, a number, a truth value or a list of these")
+    if value is None or isinstance(value, bytes):
+        raise TypeError(f"no setting can be {value!r}: give a text, a number, a truth value, a list or a table of these")
+    if isinstance(value, Mapping):
+        parts = (f"{_json.dumps(key, ensure_ascii=False)} = {_element(each)}" for key, each in value.items())
+        return "{" + ", ".join(parts) + "}"
     if isinstance(value, Iterable):
-        parts = (_json.dumps(each, ensure_ascii=False) if isinstance(each, str) else _text(each) for each in value)
-        return "[" + ", ".join(parts) + "]"
+        return "[" + ", ".join(map(_element, value)) + "]"
     return str(value)
+
+
+def _element(value: Any) -> str:
+    """As a value stands in a list or a table of TOML."""
+    return _json.dumps(value, ensure_ascii=False) if isinstance(value, str) else _text(value)
 
 
 def _quoted(value: Any) -> str:

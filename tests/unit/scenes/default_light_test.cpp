@@ -54,6 +54,8 @@ TEST(DefaultLight, OnlyWhatIsDarkOtherwiseUnlessTheKeySaysSo) {
             EXPECT_EQ(scene.lights.size(), own + (added ? 1U : 0U));
             EXPECT_EQ(scene.ambient, glm::dvec3(added ? 0.2 : 0.0));
             EXPECT_EQ(has_note(scene, "over the camera's shoulder"), added);
+            EXPECT_EQ(has_note(scene, "no ray looks for a light"),
+                      dark && path && mode == DefaultLight::never);
           }
         }
       }
@@ -131,10 +133,11 @@ TEST(Sky, AndSunAreInEveryKindOfSceneAndPose) {
       EXPECT_LT(glm::length(scene.lights.back().direction - glm::dvec3(0.0, -0.6, -0.8)), 1e-15);
       EXPECT_EQ(scene.lights.back().color, glm::dvec3(2.0));
       EXPECT_FALSE(has_note(scene, "over the camera's shoulder")) << spec;
-      // Without a sun, a sky lights paths alone.
+      // Without a sun, a sky lights paths alone: it is no emitter, to which shadow rays could go.
       for (const bool path : {false, true}) {
         options.file.sky = {sky, {}, {}};
-        options.file.emitters_light = path;
+        options.file.emitters_light = true;
+        options.file.sky_lights = path;
         const bool added = own.lights.empty() && !own.lights_are_all && !path;
         EXPECT_EQ(open_scene(spec, options, {}).lights.size(), own.lights.size() + (added ? 1U : 0U)) << spec;
       }

@@ -1,4 +1,5 @@
 // A folder of files as one scene.
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -125,11 +126,26 @@ TEST(Folder, WithoutAnySceneIsRefused) {
   };
   EXPECT_TRUE(test::says(refusal("/"), "the folder cannot be read: No such file"));
   folder.write("a.txt", "");
-  EXPECT_TRUE(test::says(refusal("/"), "has no file whose name ends in .gltf, .glb, .obj or .ply"));
+  EXPECT_TRUE(test::says(refusal("/"), "has no file whose name ends in .gltf, .glb, .obj, .ply or .camera"));
   folder.write("a.obj", "v 0 0 0\n");
   EXPECT_TRUE(test::says(refusal("/"), "none of its 1 parts has triangles"));
   EXPECT_TRUE(test::says(refusal(""), "is a folder: write '"));
   EXPECT_TRUE(test::says(refusal("/a.txt/"), "the folder cannot be read: Not a directory"));
+}
+
+TEST(Folder, TakesWhatLiesInItAlone) {
+  const testing::SceneFolder folder;
+  folder.write("a.obj", triangle);
+  folder.write("._a.obj", "another program's");
+  folder.write("b.obj/inner.txt", "");
+  EXPECT_EQ(open_all(folder).triangles.size(), 1U);
+  const testing::SceneFolder other;
+  other.write("secret.obj", triangle);
+  std::filesystem::create_symlink(folder.path() / "a.obj", folder.path() / "c.obj");
+  EXPECT_EQ(open_all(folder).triangles.size(), 2U);
+  std::filesystem::create_symlink(other.path() / "secret.obj", folder.path() / "d.obj");
+  EXPECT_TRUE(test::says(test::user_error_of([&] { static_cast<void>(open_all(folder)); }),
+                         "the file \"d.obj\" leads out of the scene's folder"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // pbrt files: what they become, and how broken and malicious ones are refused.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "loaded_scene.h"
 #include "scenes/file_options.h"
 #include "scenes/gltf.h"
+#include "scenes/texture.h"
 #include "text_scene.h"
 
 namespace marti::scenes {
@@ -282,8 +284,9 @@ TEST(Pbrt, WhatIsWrongIsSaidWithItsLine) {
       {"ActiveTransform Now", "ActiveTransform is All, StartTime or EndTime, not 'Now'"},
       {"Translate \"[\" 1 2 3 ]", "'[' is no number"},
       {"Shape \"plymesh\"", "the name of a file is missing or empty"},
-      {"AttributeBegin", "an AttributeBegin has no AttributeEnd"},
-      {"ObjectBegin \"a\"", "an ObjectBegin has no ObjectEnd"},
+      {"\nAttributeBegin\n", "a.pbrt:6: the AttributeBegin has no end"},
+      {"ObjectBegin \"a\"", "the ObjectBegin has no end"},
+      {"ObjectBegin \"a\" AttributeEnd", "an ObjectBegin has no ObjectEnd"},
       {"ObjectEnd", "ObjectEnd without its begin"},
       {"ObjectBegin \"a\" ObjectInstance \"a\"", "an instance lies in an object"},
       {"ObjectInstance \"a\"", "there is no object 'a' before it"},
@@ -340,6 +343,77 @@ TEST(Pbrt, InstancesAreCountedBeforeTheyAreMade) {
   FileOptions few;
   few.max_triangles = 99;
   EXPECT_NE(SceneFolder().refusal("a.pbrt", text, few).find("more than 99 triangles"), std::string::npos);
+}
+
+// Shapes get pbrt's own coordinates: each face the whole texture, whatever its neighbours have.
+TEST(Pbrt, MeshesWithoutCoordinatesHaveThoseOfTheFormat) {
+  const SceneFolder folder;
+  folder.write("a.png", "A");
+  const ImageDecoder texel = [](std::span<const std::byte>, std::string_view name) {
+    return texture_from_samples(name, 1, 1, 1, std::array<std::uint8_t, 1>{255});
+  };
+  const std::string points = "\"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 0 ] ";
+  for (const bool patch : {false, true}) {
+    for (const bool textured : {false, true}) {
+      const Scene scene = folder.open(
+          "a.pbrt",
+          std::string("WorldBegin\nTexture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n") +
+              (textured ? "Material \"diffuse\" \"texture reflectance\" \"c\"\n" : "") +
+              (patch ? "Shape \"bilinearmesh\" " + points
+                     : "Shape \"trianglemesh\" " + points + "\"integer indices\" [ 0 1 2  1 3 2 ]"),
+          {}, texel);
+      ASSERT_EQ(scene.triangles.size(), 2U);
+      EXPECT_EQ(scene.positions.size(), textured ? 6U : 4U);
+      if (!textured) {
+        EXPECT_TRUE(scene.uvs.empty() || scene.uvs[0] == glm::dvec2(0.0));
+        continue;
+      }
+      // pbrt's v grows upwards, the texture's rows downwards. Of a patch a point has its own coordinates.
+      for (std::size_t t = 0; t < 2; ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = scene.triangles[t].vertex[k];
+          const glm::dvec3& at = scene.positions[vertex];
+          const glm::dvec2 by_number = std::array<glm::dvec2, 3>{{{0, 1}, {1, 1}, {1, 0}}}[k];
+          EXPECT_EQ(scene.uvs[vertex], patch ? glm::dvec2(at.x, 1.0 - at.y) : by_number) << t << ' ' << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(Pbrt, AttributesAreForStatementsAfterThemUpToTheEnd) {
+  const Scene scene = open(
+      "AttributeBegin\nAttribute \"shape\" \"float radius\" 2\nShape \"sphere\"\n"
+      "Attribute \"shape\" \"float radius\" 3\nShape \"sphere\"\nShape \"sphere\" \"float radius\" 4\n"
+      "Attribute \"material\" \"rgb reflectance\" [ .25 .5 .75 ]\nMaterial \"diffuse\"\n"
+      "Shape \"disk\"\nAttributeEnd\nShape \"sphere\"\n");
+  ASSERT_EQ(scene.quadrics.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(scene.quadrics[i].radius, (std::array{2.0, 3.0, 4.0, 1.0})[i]);
+  }
+  EXPECT_EQ(glm::length(corner(scene, 0, 0)), 3.0);
+  EXPECT_EQ(scene.materials[scene.triangles[0].material].color, glm::dvec3(0.25, 0.5, 0.75));
+}
+
+TEST(Pbrt, AreaLightsOfOneSideAreNoted) {
+  const std::string light = "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] ";
+  EXPECT_TRUE(has_note(open(light + one_triangle), "1 area lights of one side, by ones of both"));
+  EXPECT_FALSE(has_note(open(light + "\"bool twosided\" true " + one_triangle), "area lights"));
+}
+
+// Spheres become triangles for the sake of instances, and only where there are some.
+TEST(Pbrt, SpheresStayWhereNoInstanceIsKept) {
+  FileOptions kept;
+  kept.instances = Instances::kept;
+  const SceneFolder folder;
+  const std::string object = std::string("ObjectBegin \"a\"\n") + one_triangle + "ObjectEnd\n";
+  const std::string sphere = "WorldBegin\nShape \"sphere\"\n" + object;
+  const Scene none = folder.open("a.pbrt", sphere, kept);
+  EXPECT_EQ(none.quadrics.size(), 1U);
+  EXPECT_FALSE(has_note(none, "because instances are kept"));
+  const Scene some = folder.open("a.pbrt", sphere + "ObjectInstance \"a\"\n", kept);
+  EXPECT_TRUE(some.quadrics.empty());
+  EXPECT_TRUE(has_note(some, "1 spheres and cylinders, by triangles, because instances are kept"));
 }
 
 }  // namespace

@@ -200,5 +200,17 @@ TEST(SceneList, IsTheSameFromAnyDirectory) {
   EXPECT_FALSE(reads_files("['tetra:1', 'gears:1']"));
 }
 
+// pbrt's camera decides whether its file is mirrored; one without a camera is not.
+TEST(SceneList, SaysWhereOneFileOfPbrtIsMirroredAndAnotherIsNot) {
+  const testing::SceneFolder folder;
+  const std::string shape = "WorldBegin\nShape \"disk\"\n";
+  folder.write("a.pbrt", "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\"\n" + shape);
+  folder.write("b.pbrt", shape);
+  EXPECT_TRUE(has_note(open_list(folder, R"(["a.pbrt", "b.pbrt"])"),
+                       "a.pbrt is mirrored, and b.pbrt is not: they fit together where this one has scale"));
+  EXPECT_FALSE(has_note(open_list(folder, R"(["a.pbrt", "a.pbrt"])"), "is not: they fit together"));
+  EXPECT_FALSE(has_note(open_list(folder, R"(["b.pbrt", "b.pbrt"])"), "is not: they fit together"));
+}
+
 }  // namespace
 }  // namespace marti::scenes
