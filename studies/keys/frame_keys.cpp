@@ -180,8 +180,9 @@ void declare_frame_keys(sim::Schema& schema) {
               "the file's static pose");
   schema.choice("scene.default_light", "auto", names(scenes::default_light_names),
                 "auto: a file without lights, if there is no sun, gets one over the camera's shoulder and "
-                "ambient light, with image.integrator = \"path\" only if no triangle of it emits light and "
-                "there is no sky; always: every scene gets them beside its own; never: none does");
+                "ambient light, with image.integrator = \"path\" or \"shadow\" only if no triangle of it "
+                "emits light, and with \"path\" if there is no sky; always: every scene gets them beside its "
+                "own; never: none does");
   schema.boolean("scene.strict", false,
                  "refuse a file with parts that are missing or that its format does not allow; else what can "
                  "be replaced is, with a note (docs/scenes.md)");

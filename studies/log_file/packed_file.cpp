@@ -10,6 +10,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -65,10 +66,25 @@ std::vector<unsigned char> sorted_bytes(const std::vector<unsigned char>& bytes,
   return sorted;
 }
 
+// A scene or a result whose name was given by mistake is not lost.
+std::filesystem::path without_another(std::filesystem::path file) {
+  std::array<char, magic.size()> beginning{};
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) > 0) {
+    std::ifstream(file, std::ios::binary).read(beginning.data(), beginning.size());
+    if (std::string_view(beginning.data(), beginning.size()) != magic) {
+      throw sim::UserError(sim::shown(file.string()) +
+                           ": exists and is no work log, so it is not replaced by one; choose another name, "
+                           "or remove it");
+    }
+  }
+  return file;
+}
+
 }  // namespace
 
 PackedWriter::PackedWriter(std::filesystem::path file)
-    : file_(std::move(file)), pending_(file_), output_(pending_.open()) {
+    : file_(without_another(std::move(file))), pending_(file_), output_(pending_.open()) {
   part_.reserve(part_bytes);
   write(magic);
   std::array<char, sizeof format_version> version{};

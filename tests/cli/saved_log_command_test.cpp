@@ -134,6 +134,9 @@ TEST_F(SavedLog, SaysWhatItCannotAnswer) {
   expect_refused(run + " --keep textures", "\"textures\" can be kept only while the scene is traced");
   EXPECT_TRUE(says(marti(run + " --verify-plan"), "not verified"));
   expect_refused("run " + small_run + " --within 5% --save-log " + quoted(file("b.log")), "leave one out");
+  write(file("scene.obj"), "v 0 0 0\n");
+  expect_refused("run " + small_run + " --save-log " + quoted(file("scene.obj")),
+                 "is no work log, so it is not replaced");
 
   const std::string bvh = "run " + small_run + " --set structure.kind=bvh";
   ASSERT_EQ(marti(bvh + " --save-log " + quoted(log_)).status, 0);

@@ -476,11 +476,13 @@ class Sweeps(unittest.TestCase):
         self.assertEqual(marti._axis_texts({"cache.size": "8KiB", "machine.nodes": numpy.int64(4)}),
                          ["cache.size=8KiB", "machine.nodes=4"])
         self.assertEqual(marti._text(numpy.bool_(False)), "false")
-        for wrong in (None, b"8", {"a": 1}):
+        for wrong in (None, b"8", {"a": None}):
             with self.assertRaises(TypeError):
                 marti._text(wrong)
         self.assertEqual(marti._quoted("a,b.obj"), '"a,b.obj"')
         self.assertEqual(marti._text(["leaving", 1, True]), '["leaving", 1, true]')
+        self.assertEqual(marti._text(["a.obj", {"source": "b.obj", "translate": [0, 0.5, 1]}]),
+                         '["a.obj", {"source" = "b.obj", "translate" = [0, 0.5, 1]}]')
 
 
 class Studies(unittest.TestCase):
