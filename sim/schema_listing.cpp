@@ -36,13 +36,14 @@ std::string type_of(const Key& key) {
   return (key.is_list ? "list of " : "") + std::string(name_of(key.type));
 }
 
-/// What values the key takes: "integer in cycles, 1 to 64"; of a choice and a boolean the values alone.
+/// What values the key takes: "1 to 64 cycles", "list of integer, 0 to 9", "text". A range says whether
+/// numbers are whole.
 std::string facts_of(const Key& key) {
   const std::string range = print_range(key);
-  if (key.type == ValueType::choice && !key.is_list) {
-    return range;
+  if (key.is_list || range.empty()) {
+    return type_of(key) + (key.unit.empty() ? "" : " in " + key.unit) + (range.empty() ? "" : ", " + range);
   }
-  return type_of(key) + (key.unit.empty() ? "" : " in " + key.unit) + (range.empty() ? "" : ", " + range);
+  return range + (key.unit.empty() ? "" : " " + key.unit);
 }
 
 /// `text` broken at blanks into lines of at most `width` columns, each after `indent` blanks.
