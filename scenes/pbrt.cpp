@@ -202,8 +202,9 @@ class Reader {
       state_.emission = color_in(parameters, "L", glm::dvec3(1.0), largest_emission, left_out_) *
                         parameters.number("scale", 1.0, 0.0, largest_emission);
       state_.emission = glm::min(state_.emission, glm::dvec3(largest_emission));
-      left_out_.replaced["area lights of one side, by ones of both"] +=
-          parameters.text("twosided") == "true" ? 0U : 1U;
+      if (parameters.text("twosided") != "true") {
+        ++left_out_.replaced["area lights of one side, by ones of both"];
+      }
       parameters.leave_out_rest(left_out_);
     } else if (name == "Camera") {
       const std::string kind = text_.text();

@@ -36,11 +36,11 @@ std::string type_of(const Key& key) {
   return (key.is_list ? "list of " : "") + std::string(name_of(key.type));
 }
 
-/// What values the key takes: "1 to 64 cycles", "list of integer, 0 to 9", "text". A range says whether
-/// numbers are whole.
+/// What values the key takes: "1 to 64 cycles", "integer in lines, at least 1", "text". Where there is a
+/// lowest and a highest value, they say what numbers these are.
 std::string facts_of(const Key& key) {
   const std::string range = print_range(key);
-  if (key.is_list || range.empty()) {
+  if (key.is_list || (key.choices.empty() && (!key.minimum || !key.maximum))) {
     return type_of(key) + (key.unit.empty() ? "" : " in " + key.unit) + (range.empty() ? "" : ", " + range);
   }
   return range + (key.unit.empty() ? "" : " " + key.unit);

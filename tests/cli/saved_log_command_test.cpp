@@ -151,6 +151,7 @@ TEST_F(SavedLog, RefusesOtherFilesAndDamagedOnes) {
   fs::remove(log_);
   write(log_, "# a configuration\n");
   expect_refused(run, "is no work log as `marti run --save-log` writes it");
+  fs::remove(log_);
   ASSERT_EQ(marti("run " + small_run + " --save-log " + quoted(log_)).status, 0);
   expect_refused("run " + small_run + from_log() + " --save-log " + quoted(log_), "is read as input");
   std::string bytes = read(log_);

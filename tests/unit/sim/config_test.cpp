@@ -401,10 +401,10 @@ TEST(Schema, ListingsShowEveryKeyWithItsFacts) {
     EXPECT_NE(markdown.find("| `" + key.name + "` |"), std::string::npos) << key.name;
   }
   EXPECT_NE(text.find("[cache]\nThe private cache of a node.\n  cache.size = \"16 KiB\"\n"
-                      "      size, 0 B to 1 GiB\n      Capacity; 0 leaves the cache out\n"),
+                      "      0 B to 1 GiB\n      Capacity; 0 leaves the cache out\n"),
             std::string::npos)
       << text;
-  EXPECT_NE(markdown.find("| `cache.ways` | integer | `4` | lines | at least 1 | Lines in a set |"),
+  EXPECT_NE(markdown.find("| `cache.ways` | `4` | integer in lines, at least 1 | Lines in a set |"),
             std::string::npos)
       << markdown;
 }
