@@ -22,6 +22,7 @@ DatabaseUse database_use(const processors::program::WorkLog& log) {
       const std::uint32_t operand = processors::program::operand_of(row.words[at]);
       switch (step) {
         case Step::branch:
+        case Step::transform:
         case Step::cut:
           read[operand] = true;
           break;
