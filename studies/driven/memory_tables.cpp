@@ -241,12 +241,9 @@ Table memories_table(std::span<const Memory> memories) {
 }
 
 std::vector<Table> page_tables(std::span<const Memory> memories, std::span<const std::string> answer) {
-  Table sentences("memory_answer", "Answer", {tables::text_column("answer", "a sentence")});
-  for (const std::string& sentence : answer) {
-    sentences.add_row({sentence});
-  }
   const std::vector<const Memory*> shown = fastest(memories);
-  std::vector<Table> all = {std::move(sentences), memories_table(memories)};
+  std::vector<Table> all = {tables::answer_table("memory_answer", "Answer", answer),
+                            memories_table(memories)};
   for (Table& table : std::array{axis_table(memories), latency_table(shown), bandwidth_table(shown),
                                  rows_table(shown), queue_table(shown), energy_table(shown)}) {
     if (!table.rows().empty()) {

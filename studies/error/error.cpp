@@ -28,13 +28,10 @@ tables::StudyOutput run_error(sim::Config& config, sim::WorkMeter* meter) {
       tables::counted(error.machine.all_nodes(), "node"), keys::size_text(small),
       tables::counted(small.max_depth, "ray"), tables::counted(small.samples, "sample"));
   const std::vector<std::string> answers = answers_of(settings);
-  tables::Table answer_table("host_error_answer",
-                             "Which way gives which error for which share of the run time",
-                             {tables::text_column("answer", "a sentence")});
-  for (const std::string& answer : answers) {
-    answer_table.add_row({answer});
-  }
-  output.host_tables = {error_table(settings), std::move(answer_table)};
+  output.host_tables = {
+      error_table(settings),
+      tables::answer_table("host_error_answer", "Which way gives which error for which share of the run time",
+                           answers)};
   output.host_report = sim::joined(answers, "\n") + "\n\n" + tables::text_of(output.host_tables[0]);
   output.tables.push_back(tables::provenance_table(config.effective_values()));
   output.host_tables.push_back(tables::host_table());

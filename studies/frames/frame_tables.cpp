@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "sim/units.h"
@@ -70,6 +71,23 @@ TreeChange change_of(const FrameTree& tree) {
     change.tests += update.work[node].overlaps;
   }
   return change;
+}
+
+std::string ways_answer(std::span<const FrameOutcome> frames) {
+  std::array<sim::Ticks, frame_ways> cycles{};
+  for (const FrameOutcome& frame : frames) {
+    for (std::size_t way = 0; way < frame_ways; ++way) {
+      cycles[way] = sim::add_ticks(cycles[way], frame.ways[way].cycle());
+    }
+  }
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(cycles) - cycles.begin());
+  const std::string text =
+      fmt::format("{} has the shortest cycles, {} for {}", frame_way_names[best],
+                  tables::seconds(cycles[best]), tables::counted(frames.size(), "frame"));
+  return cycles[best] == cycles[0]
+             ? text
+             : text + fmt::format(", {} less than {}", tables::rough_percent(saved(cycles[best], cycles[0])),
+                                  frame_way_names[0]);
 }
 
 tables::Table frame_table(std::span<const FrameOutcome> frames) {

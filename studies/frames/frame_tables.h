@@ -50,6 +50,9 @@ struct FrameOutcome {
 [[nodiscard]] std::string subject_text(const sim::Config& config, const FramesConfig& frames,
                                        std::size_t count, std::string_view images);
 
+/// Which way has the shortest cycles, all frames together: one sentence.
+[[nodiscard]] std::string ways_answer(std::span<const FrameOutcome> frames);
+
 /// "frames": a row for each frame: what moved, what was altered, hashes.
 [[nodiscard]] tables::Table frame_table(std::span<const FrameOutcome> frames);
 /// "cycles": a row for each frame and way.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -111,8 +112,7 @@ std::string head_of(const sim::Config& config, const FramesConfig& frames, std::
   } else if (build.initial == processors::machine::InitialTree::rule) {
     initial = fmt::format("the level of rule k = {:g}", build.rule_k);
   }
-  return "The cycle \"build, render\", frame by frame\n" +
-         subject_text(config, frames, count,
+  return subject_text(config, frames, count,
                       frames.verify ? ", each equal to that of a tree built from nothing" : "") +
          fmt::format(
              "\n"
@@ -138,9 +138,10 @@ tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
   tables::StudyOutput output;
   output.tables = {frame_table(outcomes), cycle_table(outcomes), total_table(outcomes)};
   const tables::Table& cycles = output.tables[1];
+  const std::string answer = ways_answer(outcomes);
   output.report =
-      head_of(config, frames, outcomes.size()) + "\n" + tables::text_of(output.tables[0]) + "\n" +
-      tables::side_by_side(cycles, "frame", "way", "build", "Build: time before each frame") + "\n" +
+      answer + "\n" + head_of(config, frames, outcomes.size()) + "\n" + tables::text_of(output.tables[0]) +
+      "\n" + tables::side_by_side(cycles, "frame", "way", "build", "Build: time before each frame") + "\n" +
       tables::side_by_side(cycles, "frame", "way", "render",
                            "Render: time of each frame, building on demand included") +
       "\n" + tables::side_by_side(cycles, "frame", "way", "cycle", "Cycle: both") + "\n" +
@@ -149,6 +150,8 @@ tables::StudyOutput run_frames(sim::Config& config, sim::WorkMeter* meter) {
       tables::side_by_side(cycles, "frame", "way", "memory",
                            "Memory: records and lists at the end of each frame") +
       "\n" + tables::text_of(output.tables[2]);
+  output.tables.push_back(
+      tables::answer_table("frames_answer", "Which way has the shortest cycles", std::array{answer}));
   output.tables.push_back(tables::provenance_table(config.effective_values()));
   output.host_tables = {host_frame_table(outcomes), tables::host_table()};
   output.host_report = tables::text_of(output.host_tables[0]) + "\n" + tables::text_of(output.host_tables[1]);

@@ -16,6 +16,7 @@
 #include "processors/replay/replay.h"
 #include "sim/error.h"
 #include "sim/finished_parts.h"
+#include "sim/joined.h"
 #include "studies/frames/frame_sequence.h"
 #include "studies/frames/frame_tables.h"
 #include "studies/frames/refit_tables.h"
@@ -151,8 +152,9 @@ class RefitStudy {
 };
 
 std::string refit_head(const sim::Config& config, const FramesConfig& frames,
-                       const std::vector<RefitFrame>& all, bool instances) {
-  return refit_answer(all, instances) +
+                       const std::vector<RefitFrame>& all, const std::vector<std::string>& answer,
+                       bool instances) {
+  return sim::joined(answer, "\n") + "\n" +
          subject_text(config, frames, all.size(), ", each equal with all trees") +
          fmt::format(
              "\n"
@@ -174,12 +176,14 @@ tables::StudyOutput output_of(sim::Config& config, const FramesConfig& frames) {
   const auto beside = [&](const char* figure, const char* title) {
     return tables::side_by_side(output.tables[1], "frame", "way", figure, title) + "\n";
   };
-  output.report = refit_head(config, frames, study.outcomes, instances) + "\n" +
+  const std::vector<std::string> answer = refit_answer(study.outcomes, instances);
+  output.report = refit_head(config, frames, study.outcomes, answer, instances) + "\n" +
                   tables::text_of(output.tables[0]) + "\n" +
                   beside("share", "Making the tree: share of the cycle, at least") +
                   beside("render", "Render: time of each frame") + beside("cycle", "Cycle: both") +
                   beside("slower", "Longer than with the rebuilt tree") +
                   beside("records", "Records written before the frame") + tables::text_of(output.tables[2]);
+  output.tables.push_back(tables::answer_table("frames_answer", "Which way has the shortest cycles", answer));
   output.tables.push_back(tables::provenance_table(config.effective_values()));
   output.host_tables = {host_refit_table(study.outcomes, instances), tables::host_table()};
   output.host_report = tables::text_of(output.host_tables[0]) + "\n" + tables::text_of(output.host_tables[1]);

@@ -63,7 +63,7 @@ std::string shortest_line(const RefitFrame& total, std::size_t later, bool insta
   const RefitOutcome& best = total.of(ways[0]);
   const RefitOutcome& next = total.of(ways[1]);
   if (best.cycle() == next.cycle()) {
-    return fmt::format("The cycles of {} and {} are equally long, {} at least\n", name_of(ways[0]),
+    return fmt::format("The cycles of {} and {} are equally long, {} at least", name_of(ways[0]),
                        name_of(ways[1]), tables::seconds(best.cycle()));
   }
   std::string text = fmt::format("{} has the shortest cycles, {} for {}, {} less than {}", doing(ways[0]),
@@ -74,14 +74,14 @@ std::string shortest_line(const RefitFrame& total, std::size_t later, bool insta
         ", unless its trees take {} times the least time",
         tables::times(1.0 + static_cast<double>(next.cycle() - best.cycle()) / static_cast<double>(making)));
   }
-  return text + "\n";
+  return text;
 }
 
 }  // namespace
 
-std::string refit_answer(std::span<const RefitFrame> frames, bool instances) {
+std::vector<std::string> refit_answer(std::span<const RefitFrame> frames, bool instances) {
   if (frames.size() < 2) {
-    return "One frame: there is nothing to refit\n";
+    return {"One frame: there is nothing to refit"};
   }
   const RefitFrame total = total_of(frames);
   const auto slowest = std::ranges::max_element(
@@ -89,20 +89,20 @@ std::string refit_answer(std::span<const RefitFrame> frames, bool instances) {
   const auto shorter = std::ranges::find_if(frames, [](const RefitFrame& frame) {
     return frame.of(RefitWay::rebuild).cycle() < frame.of(RefitWay::refit).cycle();
   });
-  std::string text = shortest_line(total, frames.size() - 1, instances);
+  std::vector<std::string> answer = {shortest_line(total, frames.size() - 1, instances)};
   if (const std::uint64_t all = total.of(RefitWay::rebuild).records; all > 0) {
-    text += fmt::format(
+    answer.push_back(fmt::format(
         "Refitting writes {} of the records that rebuilding does, and frames take at most {} longer (frame "
-        "{})\n",
+        "{})",
         tables::rough_percent(static_cast<double>(total.of(RefitWay::refit).records) /
                               static_cast<double>(all)),
-        tables::rough_percent(slower(*slowest, RefitWay::refit)), slowest->number);
+        tables::rough_percent(slower(*slowest, RefitWay::refit)), slowest->number));
   }
   if (shorter != frames.end()) {
-    text +=
-        fmt::format("Frame {} is the first whose cycle is shorter with the rebuilt tree\n", shorter->number);
+    answer.push_back(
+        fmt::format("Frame {} is the first whose cycle is shorter with the rebuilt tree", shorter->number));
   }
-  return text;
+  return answer;
 }
 
 tables::Table refit_frame_table(std::span<const RefitFrame> frames) {

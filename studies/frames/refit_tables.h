@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "processors/cost/tree_work.h"
 #include "sim/time.h"
@@ -43,7 +44,7 @@ struct RefitFrame {
 /// much shorter than the next, and how many times its least time its trees may take without changing that.
 /// Then what refitting saves and costs, and from which frame on it does not pay. `instances`: they are kept,
 /// so that there is RefitWay::rebuild_top.
-[[nodiscard]] std::string refit_answer(std::span<const RefitFrame> frames, bool instances);
+[[nodiscard]] std::vector<std::string> refit_answer(std::span<const RefitFrame> frames, bool instances);
 
 /// "frames": a row for each frame: what moved, hashes.
 [[nodiscard]] tables::Table refit_frame_table(std::span<const RefitFrame> frames);

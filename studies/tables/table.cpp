@@ -142,6 +142,14 @@ const Cell& Table::at(std::size_t row, std::string_view column_name) const {
   return rows_[row][column(column_name)];
 }
 
+Table answer_table(std::string name, std::string title, std::span<const std::string> sentences) {
+  Table table(std::move(name), std::move(title), {text_column("answer", "a sentence")});
+  for (const std::string& sentence : sentences) {
+    table.add_row({sentence});
+  }
+  return table;
+}
+
 Table describe_columns(std::span<const Table> tables) {
   Table described(
       "columns", "Every column of every table",

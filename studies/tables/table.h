@@ -106,6 +106,9 @@ class Table {
   std::vector<std::vector<Cell>> rows_;
 };
 
+/// The sentences with which a study answers: its page begins with them. The name ends in "_answer".
+[[nodiscard]] Table answer_table(std::string name, std::string title, std::span<const std::string> sentences);
+
 /// The table "columns": table, name, unit and description of every column of `tables`.
 [[nodiscard]] Table describe_columns(std::span<const Table> tables);
 
