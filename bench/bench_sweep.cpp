@@ -185,10 +185,9 @@ void open_again(bench::Report& report, const Scratch& scratch) {
   const std::string config = scratch.path("ten-thousand.toml");
   sim::write_file(config,
                   "[scene]\nsource = \"teapot:4\"\n[image]\nwidth = 8\nheight = 8\n[sweep.axes]\n"
-                  "machine.nodes = { from = 1, to = 512, steps = 10, scale = \"log\" }\n"
-                  "cache.size = { from = \"8 KiB\", to = \"4 MiB\", steps = 10, scale = \"log\" }\n"
+                  "machine.nodes = \"1..512*2\"\ncache.size = \"8 KiB..4 MiB*2\"\n"
                   "cache.line = [16, 32, 64, 128]\ncache.ways = [1, 2, 4, 8, 16]\n"
-                  "interconnect.width = { from = 4, to = 64, steps = 5, scale = \"log\" }\n");
+                  "interconnect.width = \"4 B..64 B*2\"\n");
   const std::vector<std::string> arguments = {"sweep", config, "--quiet", "-o", scratch.path("many")};
   const Took first = run_program(arguments);
   const Took again = run_program(arguments);
