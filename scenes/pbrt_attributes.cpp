@@ -12,7 +12,7 @@ void Attributes::add(const std::string& made, const Parameters& parameters, cons
     all.push_back(parameter);
   }
   for (const auto& [kind, of_kind] : *given) {
-    file.take_memory(Parameters(of_kind, kind).bytes(), "its attributes take");
+    file.take_memory(kind.size() + bytes_of(of_kind), "its attributes take");
   }
   given_ = std::move(given);
 }

@@ -69,13 +69,15 @@ void turn_to_normals(Scene& mesh) {
 void set_default_coordinates(Scene& mesh, const SourceFile& file) {
   file.require_memory(mesh.triangles.size() * 3 * (2 * sizeof(glm::dvec3) + sizeof(glm::dvec2)),
                       "its texture coordinates take");
+  const glm::dvec2 from = turned_coordinates(0.0, 0.0);
+  const glm::dvec2 across = turned_coordinates(1.0, 1.0);
+  const std::array<glm::dvec2, 3> first_half = {from, turned_coordinates(1.0, 0.0), across};
+  const std::array<glm::dvec2, 3> second_half = {from, across, turned_coordinates(0.0, 1.0)};
   Scene apart;
   std::uint32_t polygon = 0xffffffffU;
   for (Triangle& triangle : mesh.triangles) {
     const bool second = triangle.polygon == std::exchange(polygon, triangle.polygon);
-    const std::array<glm::dvec2, 3> coordinates = {
-        turned_coordinates(0.0, 0.0), second ? turned_coordinates(1.0, 1.0) : turned_coordinates(1.0, 0.0),
-        second ? turned_coordinates(0.0, 1.0) : turned_coordinates(1.0, 1.0)};
+    const std::array<glm::dvec2, 3>& coordinates = second ? second_half : first_half;
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t& vertex = triangle.vertex[k];
       apart.positions.push_back(mesh.positions[vertex]);

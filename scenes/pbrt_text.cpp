@@ -47,9 +47,9 @@ void Parameters::leave_out_rest(LeftOut& left_out) const {
   }
 }
 
-std::uint64_t Parameters::bytes() const {
-  std::uint64_t bytes = place_.size();
-  for (const Parameter& parameter : all_) {
+std::uint64_t bytes_of(const std::vector<Parameter>& parameters) {
+  std::uint64_t bytes = 0;
+  for (const Parameter& parameter : parameters) {
     bytes += 2 * sizeof(Parameter) + parameter.type.size() + parameter.name.size() +
              parameter.numbers.capacity() * sizeof(double) + parameter.texts.capacity() * sizeof(std::string);
     for (const std::string& text : parameter.texts) {

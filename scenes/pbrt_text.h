@@ -28,6 +28,9 @@ struct Parameter {
   mutable bool asked = false;      ///< for its value, or whether it is there
 };
 
+/// Bytes of host memory that they take.
+[[nodiscard]] std::uint64_t bytes_of(const std::vector<Parameter>& parameters);
+
 /// The parameters of one statement.
 class Parameters {
  public:
@@ -41,7 +44,7 @@ class Parameters {
   /// The first parameter with this name; nullptr if no parameter has it.
   [[nodiscard]] const Parameter* find(std::string_view name) const;
   /// Bytes of host memory that they take.
-  [[nodiscard]] std::uint64_t bytes() const;
+  [[nodiscard]] std::uint64_t bytes() const { return place_.size() + bytes_of(all_); }
   /// The numbers of the parameter `name`; an empty list if it is not given. Throws UserError when their count
   /// is not a multiple of `each`.
   [[nodiscard]] const std::vector<double>& numbers(std::string_view name, std::size_t each) const;
