@@ -73,6 +73,13 @@ TreeChange change_of(const FrameTree& tree) {
   return change;
 }
 
+std::string shortest_text(std::string_view best, sim::Ticks cycles, std::size_t frames, double less,
+                          std::string_view than) {
+  return fmt::format("{} has the shortest cycles, {} for {}", best, tables::seconds(cycles),
+                     tables::counted(frames, "frame")) +
+         (less == 0.0 ? std::string() : fmt::format(", {} less than {}", tables::rough_percent(less), than));
+}
+
 std::string ways_answer(std::span<const FrameOutcome> frames) {
   std::array<sim::Ticks, frame_ways> cycles{};
   for (const FrameOutcome& frame : frames) {
@@ -81,13 +88,8 @@ std::string ways_answer(std::span<const FrameOutcome> frames) {
     }
   }
   const auto best = static_cast<std::size_t>(std::ranges::min_element(cycles) - cycles.begin());
-  const std::string text =
-      fmt::format("{} has the shortest cycles, {} for {}", frame_way_names[best],
-                  tables::seconds(cycles[best]), tables::counted(frames.size(), "frame"));
-  return cycles[best] == cycles[0]
-             ? text
-             : text + fmt::format(", {} less than {}", tables::rough_percent(saved(cycles[best], cycles[0])),
-                                  frame_way_names[0]);
+  return shortest_text(frame_way_names[best], cycles[best], frames.size(), saved(cycles[best], cycles[0]),
+                       frame_way_names[0]);
 }
 
 tables::Table frame_table(std::span<const FrameOutcome> frames) {

@@ -50,6 +50,9 @@ struct FrameOutcome {
 [[nodiscard]] std::string subject_text(const sim::Config& config, const FramesConfig& frames,
                                        std::size_t count, std::string_view images);
 
+/// "X has the shortest cycles, 1.2 s for 7 frames, 3 % less than Y"; without its end where nothing is saved.
+[[nodiscard]] std::string shortest_text(std::string_view best, sim::Ticks cycles, std::size_t frames,
+                                        double less, std::string_view than);
 /// Which way has the shortest cycles, all frames together: one sentence.
 [[nodiscard]] std::string ways_answer(std::span<const FrameOutcome> frames);
 

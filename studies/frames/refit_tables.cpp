@@ -66,9 +66,8 @@ std::string shortest_line(const RefitFrame& total, std::size_t later, bool insta
     return fmt::format("The cycles of {} and {} are equally long, {} at least", name_of(ways[0]),
                        name_of(ways[1]), tables::seconds(best.cycle()));
   }
-  std::string text = fmt::format("{} has the shortest cycles, {} for {}, {} less than {}", doing(ways[0]),
-                                 tables::seconds(best.cycle()), tables::counted(later, "frame"),
-                                 tables::rough_percent(-more(best.cycle(), next.cycle())), name_of(ways[1]));
+  std::string text =
+      shortest_text(doing(ways[0]), best.cycle(), later, -more(best.cycle(), next.cycle()), name_of(ways[1]));
   if (const sim::Ticks making = best.making.all(); making > 0) {
     text += fmt::format(
         ", unless its trees take {} times the least time",
