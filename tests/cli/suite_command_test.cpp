@@ -87,6 +87,14 @@ class SuiteCommand : public testing::Test {
         .at("end")
         .get<double>();
   }
+  /// A sweep of two points that may leave out what cannot be had: it times one and gives the reason of the
+  /// other.
+  void expect_one_left_out(const std::string& reason) const {
+    const Outcome left = sweep(config, out, "--set sweep.skip_invalid=true");
+    EXPECT_EQ(left.status, 0) << left.output;
+    EXPECT_TRUE(says(left, "points        1, 1 more cannot be built"));
+    EXPECT_TRUE(says(left, reason));
+  }
 
   const TemporaryDirectory directory;
   const fs::path config = directory.path() / "suite.toml";
@@ -123,7 +131,8 @@ TEST_F(SuiteCommand, ComparesEachSceneAndGoesOn) {
   EXPECT_TRUE(says(suite(), "all of it was there already"));
 }
 
-// One that cannot be read costs no result of the others. Without any there is none.
+// A scene that cannot be read is left out, and the others have their results. With no other scene there are
+// no results.
 TEST_F(SuiteCommand, LeavesOutScenesThatCannotBeRead) {
   write(directory.path() / "bad.obj", "v 0 0 zero\n");
   write(directory.path() / "empty.obj", "v 0 0 0\n");
@@ -209,10 +218,7 @@ TEST_F(SuiteCommand, ASweepSaysWhichPointASceneCannotHave) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_TRUE(says(refused, "suite.toml:6: rt.share: which hits of triangles with holes"));
   EXPECT_TRUE(says(refused, "(the point rt.share = \"warp\" on mask.gltf)"));
-  const Outcome left = sweep(config, out, "--set sweep.skip_invalid=true");
-  EXPECT_EQ(left.status, 0) << left.output;
-  EXPECT_TRUE(says(left, "points        1, 1 more cannot be built"));
-  EXPECT_TRUE(says(left, "suite.toml:6: rt.share: which hits"));
+  expect_one_left_out("suite.toml:6: rt.share: which hits");
   EXPECT_TRUE(says(sweep(config, out, "--set sweep.skip_invalid=true"), "all of it was there already"));
 }
 
@@ -225,10 +231,7 @@ TEST_F(SuiteCommand, ASweepLeavesOutWhatIsRefusedOnceTheTreeIsThere) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_TRUE(says(refused, "suite.toml:5: dram.rows: scene and image take "));
   EXPECT_TRUE(says(refused, " on teapot:16)"));
-  const Outcome left = sweep(config, out, "--set sweep.skip_invalid=true");
-  EXPECT_EQ(left.status, 0) << left.output;
-  EXPECT_TRUE(says(left, "points        1, 1 more cannot be built"));
-  EXPECT_TRUE(says(left, "suite.toml:5: dram.rows: scene and image take "));
+  expect_one_left_out("suite.toml:5: dram.rows: scene and image take ");
 }
 
 // Two folders with the same files give the same bytes, and what one has timed the other need not.
