@@ -15,7 +15,7 @@ namespace marti::scenes {
 
 namespace {
 
-/// In the order of their names. What is hidden is none of the scene's.
+/// In the order of their names, without hidden files.
 std::vector<std::filesystem::path> scene_files(const SourceFile& folder) {
   std::vector<std::filesystem::path> files;
   FileAccess access(folder.path(), folder.options().max_file_bytes, folder.memory(), "file");

@@ -91,7 +91,7 @@ class SuiteReader {
     suite_.scenes.push_back(std::move(scene));
   }
 
-  // The source from the current directory. Refuses a list that is none.
+  // The source as it is named from the current directory. Refuses a list of sources that cannot be read.
   [[nodiscard]] std::string from_here(const sweep::TableTexts& texts, const SuiteScene& scene) const {
     try {
       if (scenes::is_scene_list(scene.source)) {

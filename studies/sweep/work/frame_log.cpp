@@ -36,8 +36,8 @@ FrameLog trace(const SweepFrame& frame) {
   return {run.frame.log, frame_row(run, hash)};
 }
 
-// The first of the frame's machines for which the key is not as it is without a configuration, else the first
-// of all; plan.machines.size() where the frame has none.
+// The first of the frame's machines whose value of the key is not the default, else the first of the frame's
+// machines; plan.machines.size() where the frame has none.
 std::size_t at_fault(const SweepPlan& plan, std::size_t frame, const std::string& key) {
   const auto machine = [&](const auto& is_it) {
     return static_cast<std::size_t>(
